@@ -331,7 +331,6 @@ void Simulation::Impl::integrate(const TimeStep& step, FrameStats& stats) {
   Stopwatch watch;
   const double dt = step.dt, share = dt * scene.frame_rate;
   solid.update_points(body, state.motion);
-  solid.hold(body, GrippedNodes::boxes(scene.grips, step.end));
   const StepReport report = scene.implicit ? solid.step_implicit(state.motion, dt, environment, scene.accuracy)
                                            : solid.step_explicit(state.motion, dt, environment);
   gripped.set_velocities(scene.grips, body.nodes, step.begin, step.end, state.motion);

@@ -46,14 +46,6 @@ struct Environment {
   std::vector<Potential*> contact;     ///< contact potentials, not owned; empty: no contact
 };
 
-/// Material that follows a rigid motion: that of the fixed nodes in the box.
-struct HeldBox {
-  Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();  ///< corners, material coordinates
-  bool rigid = true;  ///< false: its nodes do not move as a rigid body, so the material between them is left alone
-  /// Equality of all members.
-  friend bool operator==(const HeldBox&, const HeldBox&) = default;
-};
-
 // ---- The solid
 
 /// Work and result of one time step.
@@ -97,12 +89,6 @@ class Solid {
   /// node, from `first_new` on; `updated`: nodes whose neighbourhood changed.
   void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
               std::span<const NodeId> updated, State& state);
-
-  /// Imposes the motion of the nodes in boxes on the material there, for steps that fix these nodes
-  /// (Environment::fixed). Replaces the boxes of the last call; a node in several belongs to the
-  /// first. A box without four nodes that span a tetrahedron, and any box with mueller04, holds its
-  /// nodes only. Call it after update_points().
-  void hold(const Body& body, std::span<const HeldBox> boxes);
 
   /// Replaces the materials by others of the same table size, assignment to nodes, densities and
   /// discretisation. Throws InputError for any other table.

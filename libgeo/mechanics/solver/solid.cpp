@@ -82,8 +82,6 @@ void Solid::update_points(const Body& body, State& state) {
   d.update_quadrature_points(body, state, cache_->inverses);
 }
 
-void Solid::hold(const Body& body, std::span<const HeldBox> boxes) { discretisation_->hold(body, boxes); }
-
 void Solid::set_materials(const Materials& materials) {
   SolidDiscretisation& d = *discretisation_;
   bool same = materials.count() == d.materials.count() && materials.fits(size());

@@ -74,6 +74,8 @@ std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceI
   return edges;
 }
 
+double longest_path(double straight, double support) { return std::sqrt(std::sqrt(support / straight)) * straight; }
+
 std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const FrontEdge> edges) {
   std::vector<NearFront> near;
   for (const FrontEdge& e : edges) {
@@ -87,13 +89,12 @@ std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const 
 std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,
                                               std::span<const NearFront> fronts, const TriangleBvh& faces) {
   const Vec3 offset = x - node;
-  const double straight = offset.norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
+  const double straight = offset.norm(), longest = longest_path(straight, support);
   std::vector<Path> paths;
   for (const NearFront& f : fronts) {
-    // The path bends within half the edge's length and support / 1024 of its middle; twice the
-    // latter covers rounding.
-    if (f.distance >= support + f.length || f.distance + (f.middle - node).norm() - f.length - support / 256 >= longest)
-      continue;
+    // The path bends within half the edge's length and the margin of its middle.
+    const double least = f.distance + (f.middle - node).norm() - f.length - 2 * bend_margin * support;
+    if (f.distance >= support + f.length || least >= longest) continue;
     const Vec3 ahead = support / 1024 * f.edge->ahead, bend = bend_point(x, node, f.edge->a + ahead, f.edge->b + ahead);
     if (const double length = (bend - x).norm() + (node - bend).norm(); length < longest)
       paths.push_back({length, bend});

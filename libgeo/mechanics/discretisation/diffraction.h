@@ -21,6 +21,13 @@ struct FrontEdge {
 /// The front edges of the crack faces among `faces`, in the order of faces and their corners.
 std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceId> faces);
 
+/// A path bends within support / 1024 of a front edge; twice that covers rounding. The unit is
+/// the support.
+constexpr double bend_margin = 1.0 / 512;
+/// The length of paths from x to a node, below which their distance is less than `support`.
+/// `straight`: the straight distance s; the length is (support / s)^¼ s.
+double longest_path(double straight, double support);
+
 /// A front edge as a point x sees it, with what bounds the length of paths round it.
 struct NearFront {
   const FrontEdge* edge;

@@ -4,7 +4,6 @@
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "body/incremental_cache.h"
@@ -18,8 +17,6 @@ constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its 
 constexpr double ill_conditioned = 500;  // and so does one with a larger condition number; larger: fewer are widened
 constexpr double without_strain = 1e7;   // times the rounding unit 1e-16: linear fields would be off by 1e-9
 constexpr std::size_t tasks_per_batch = 32;
-// A path bends within support / 1024 of a front edge; twice that covers rounding.
-constexpr double bend_margin = 1.0 / 512;  // of a support
 
 bool is_on_face(const Complex& surface, const Vec3& p) {
   std::vector<FaceId> near;
@@ -245,11 +242,10 @@ std::vector<std::uint32_t> VisibilityChanges::faces_near(const Vec3& x, double r
   return near;
 }
 
-// Such a path is shorter than (support / s)^¼ s, with s the straight distance. All of them fill an
-// ellipsoid.
+// All such paths fill an ellipsoid.
 bool VisibilityChanges::meet_bent_paths(const Vec3& x, const Vec3& node, double support,
                                         std::span<const std::uint32_t> faces) const {
-  const double straight = (node - x).norm(), longest = std::sqrt(std::sqrt(support / straight)) * straight;
+  const double longest = longest_path((node - x).norm(), support);
   return std::any_of(faces.begin(), faces.end(), [&](auto f) {
     const auto& [middle, radius] = balls_[f];
     return (middle - x).norm() + (middle - node).norm() < longest + 2 * (radius + bend_margin * support);

@@ -106,7 +106,6 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
 double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, const EdgeFront& from,
                        std::span<const Vec3> to) {
   const auto& points = from.front.points;
-  const std::size_t n = blade.points.size();
   std::vector<double> distances(points.size(), 0);
   parallel_for(points.size() - 1, 8, [&](std::size_t begin, std::size_t end) {
     InverseDeformation::VertexCache memory;
@@ -114,10 +113,8 @@ double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, 
       const bool stands = points[k].position == to[k] || points[k + 1].position == to[k + 1];
       if (!points[k].id.valid() || !points[k + 1].id.valid() || stands) continue;
       const double at = 0.5 * (from.at[k] + from.at[k + 1]);
-      const std::size_t i = std::min(static_cast<std::size_t>(at), n - 1);
-      const Vec3 &a = blade.points[i], &b = blade.points[(i + 1) % n];
       const Vec3 before = 0.5 * (points[k].position + points[k + 1].position);
-      const auto place = half.map().to_material(half.pose() * Vec3(a + (at - double(i)) * (b - a)), memory, &before);
+      const auto place = half.map().to_material(half.pose() * place_on(blade, at), memory, &before);
       if (!place.in_support) continue;
       // A point that was inserted has no segment of its own: beside it the edge passes over the
       // next strip.

@@ -39,6 +39,12 @@ const EdgePoint& nearest(std::span<const EdgePoint> points, double at) {
   });
 }
 
+Vec3 place_on(const Blade& blade, double at) {
+  const std::size_t n = blade.points.size(), i = std::min(static_cast<std::size_t>(at), n - 1);
+  const double t = at - double(i);
+  return t > 0 ? Vec3(blade.points[i] + t * (blade.points[(i + 1) % n] - blade.points[i])) : blade.points[i];
+}
+
 std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at) {
   for (const EdgeFront& edge : fronts) {
     if (edge.at.empty() || at < edge.at.front() || at > edge.at.back()) continue;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kerf/crack.h"
+#include "kerf/scene.h"
 #include "kerf/simulation.h"
 
 namespace geo {
@@ -27,6 +28,8 @@ EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, cons
 /// The point nearest to an edge parameter. `points`: not empty.
 const EdgePoint& nearest(std::span<const EdgePoint> points, double at);
 
+/// The place of an edge parameter on a blade, in the blade's coordinates.
+Vec3 place_on(const Blade& blade, double at);
 /// The place of an edge parameter on the front that has it, between the front's points; nothing
 /// where none of the fronts does.
 std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at);

@@ -36,11 +36,7 @@ class EdgeSampler {
       : map_(map), body_(body), blade_(blade), pose_(pose), fronts_(fronts) {}
 
   Sample at(double parameter) {
-    const std::size_t n = blade_.points.size(), i = std::min(static_cast<std::size_t>(parameter), n - 1);
-    const double t = parameter - double(i);
-    const Vec3 local =
-        t > 0 ? Vec3(blade_.points[i] + t * (blade_.points[(i + 1) % n] - blade_.points[i])) : blade_.points[i];
-    Sample s{parameter, pose_ * local, {}, false, 0, std::numeric_limits<double>::infinity()};
+    Sample s{parameter, pose_ * place_on(blade_, parameter), {}, false, 0, std::numeric_limits<double>::infinity()};
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
     s.material = place.position, s.within = place.in_support;

@@ -210,6 +210,7 @@ std::optional<std::vector<FaceId>> Simulation::Impl::split_step(FrontState& fron
 // Moves all blades through the time step that the nodes have just made, from `before` to where they
 // are.
 void Simulation::Impl::cut(const std::vector<Vec3>& before, const TimeStep& step, FrameStats& stats) {
+  if (scene.blades.empty()) return;
   way = NodeWay(before, state.motion.displacement);
   const MovedBody moved{body, solid, state.motion, way, step.begin, step.end};
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {

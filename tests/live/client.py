@@ -42,9 +42,9 @@ class Program:
 class Client:
     """One WebSocket: messages are read by `next`, which acknowledges them."""
 
-    def __init__(self, address, origin=None):
+    def __init__(self, address, origin=None, timeout=60):
         parts = urllib.parse.urlsplit(address)
-        self.socket = socket.create_connection((parts.hostname, parts.port), timeout=600)
+        self.socket = socket.create_connection((parts.hostname, parts.port), timeout=timeout)
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket.sendall((f"GET {parts.path}live HTTP/1.1\r\nHost: {parts.netloc}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
                              f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\nOrigin: {origin or 'http://' + parts.netloc}\r\n\r\n").encode())

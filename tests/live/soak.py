@@ -15,7 +15,7 @@ parser.add_argument("--minutes", type=float, default=60), parser.add_argument("-
 wish = parser.parse_args()
 dice = random.Random(wish.seed)
 program = Program(os.path.join(wish.tools, "kerf-live"), wish.subject)
-client = Client(program.address)
+client = Client(program.address, timeout=600)  # a frame of a body with many cuts takes long
 frame = client.next()
 lo, hi = client.told["box"]
 middle, radius = [(a + b) / 2 for a, b in zip(lo, hi)], 0.5 * sum((b - a) ** 2 for a, b in zip(lo, hi)) ** 0.5

@@ -256,8 +256,7 @@ int Triangulator::split_at_crossing(int t, int edge, const Canonicalize& canonic
 }
 
 // Walks along the constraint at hand from triangle to triangle towards b, as far as the next vertex
-// on it. Where a
-// constraint is in the way the walk ends at a new vertex, with no edges to flip.
+// on it. Where a constraint is in the way the walk ends at a new vertex, with no edges to flip.
 Triangulator::Corridor Triangulator::walk(int b, const Departure& from, const Canonicalize& canonicalize) {
   Corridor corridor;
   for (int t = from.through, k = from.edge;;) {

@@ -13,10 +13,10 @@ using namespace geo;
 namespace {
 
 // A block of 1 × 1 × 1, spacing 0.25, and a blade with these keys.
-Scene scene_of(const std::string& head, const std::string& body, const std::string& keys, const std::string& limit) {
-  return parse_scene(head + "\n[body]\nmesh = 'a'\nspacing = 0.25\n" + body +
-                         "\n[[blade]]\npoints = [[-0.3, 0, 0], [1.3, 0.01, 0.013]]\ndivide = 7\nlimit = " + limit +
-                         "\nkeys = [" + keys + "]\n",
+Scene scene_of(const std::string& body, const std::string& keys, const std::string& limit) {
+  return parse_scene("gravity = [0, 0, 0]\n[time]\nframe_rate = 4\nstep = 0.05\n[body]\nmesh = 'a'\nspacing = 0.25\n" +
+                         body + "\n[[blade]]\npoints = [[-0.3, 0, 0], [1.3, 0.01, 0.013]]\ndivide = 7\nlimit = " +
+                         limit + "\nkeys = [" + keys + "]\n",
                      "s.toml");
 }
 
@@ -42,9 +42,9 @@ double crack_area(const Complex& surface) {
 
 TEST_CASE("a body that falls before its blade is cut by one plane") {
   // The blade is faster by a fifth, and each of its cuts moves it by less than the body falls.
-  Simulation sim(scene_of("gravity = [0, 0, 0]\n[time]\nframe_rate = 4\nstep = 0.05", "velocity = [0, 0, -2]",
-                          "[0, 0, 0.507, 1.2, 0, 0, 1, 0], [4, 0, 0.507, -8.8, 0, 0, 1, 0]", "0.1"),
-                 make_block({1, 1, 1}, 0.2));
+  Simulation sim(
+      scene_of("velocity = [0, 0, -2]", "[0, 0, 0.507, 1.2, 0, 0, 1, 0], [4, 0, 0.507, -8.8, 0, 0, 1, 0]", "0.1"),
+      make_block({1, 1, 1}, 0.2));
   const FrameStats work = run(sim, 14);
   CHECK(find_pieces(sim.body().surface).count == 2);
   CHECK(work.sheet.retreating == 0);
@@ -55,8 +55,7 @@ TEST_CASE("a body that falls before its blade is cut by one plane") {
 
 TEST_CASE("a blade that goes back in its cut cuts nothing") {
   const auto cut = [](const std::string& keys) {
-    Simulation sim(scene_of("gravity = [0, 0, 0]\n[time]\nframe_rate = 4\nstep = 0.05", "", keys, "0.5"),
-                   make_block({1, 1, 1}, 0.2));
+    Simulation sim(scene_of("", keys, "0.5"), make_block({1, 1, 1}, 0.2));
     const FrameStats work = run(sim, 6);
     CHECK(find_pieces(sim.body().surface).count == 2);
     CHECK(work.sheet.crumbs == 0);
@@ -74,7 +73,7 @@ TEST_CASE("a blade that goes back in its cut cuts nothing") {
 }
 
 TEST_CASE("a blade that is pulled out of its cut leaves it as it is") {
-  Simulation sim(scene_of("gravity = [0, 0, 0]\n[time]\nframe_rate = 4\nstep = 0.05", "",
+  Simulation sim(scene_of("",
                           "[0, 0, 0.507, 1.2, 0, 0, 1, 0], [0.4, 0, 0.507, 0.4, 0, 0, 1, 0], "
                           "[0.8, 0, 0.507, 1.5, 0, 0, 1, 0]",
                           "0.5"),
@@ -87,7 +86,7 @@ TEST_CASE("a blade that is pulled out of its cut leaves it as it is") {
 }
 
 TEST_CASE("a blade that turns by an acute angle cuts on") {
-  Simulation sim(scene_of("gravity = [0, 0, 0]\n[time]\nframe_rate = 4\nstep = 0.05", "",
+  Simulation sim(scene_of("",
                           "[0, 0, 0.407, 1.2, 0, 0, 1, 0], [0.4, 0, 0.403, 0.4, 0, 0, 1, 0], "
                           "[0.8, 0, 0.853, 1.3, 0, 0, 1, 0]",
                           "0.5"),

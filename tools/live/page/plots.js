@@ -53,13 +53,18 @@ function told(stats) {
   if (stats.message && stats.message !== plots.message && !stats.message.startsWith("slower")) notice({ notice: stats.message });
   plots.message = stats.message;
 }
-let figuresAt = 0;
+// Ten times a second at most; those of the last frame are always shown, though none comes after it.
+let figuresAt = 0, figuresTimer = 0;
 function drawFigures() {
-  const now = performance.now(), stats = live.stats;
+  const now = performance.now(), left = figuresAt + 100 - now;
   plots.frames.push(now);
-  if (now - figuresAt < 100) return;
-  figuresAt = now;
-  const rate = drawnRate();
+  clearTimeout(figuresTimer);
+  if (left > 0) figuresTimer = setTimeout(showFigures, left);
+  else showFigures();
+}
+function showFigures() {
+  const stats = live.stats, rate = drawnRate();
+  figuresAt = performance.now();
   plots.rate.add(rate);
   quality.watch(rate);
   $("force").textContent = newtons(plots.now ?? 0), $("rate").textContent = rate + " /s";

@@ -15,6 +15,11 @@ std::vector<Pose> poses_at(const std::vector<Grip>& grips, double time) {
   return poses;
 }
 
+bool holds_at(const Grip& grip, double time) {
+  const bool is_released = grip.release && !grip.motion.keys.empty() && time > grip.motion.keys.back().time;
+  return grip.active(time) && !is_released;
+}
+
 }  // namespace
 
 GrippedNodes::GrippedNodes(const std::vector<Grip>& grips, const NodeSet& nodes) {
@@ -31,12 +36,18 @@ template <class Each>
 void GrippedNodes::each_held(const std::vector<Grip>& grips, double time, const Each& each) const {
   NodeId last;
   for (const auto& [i, g] : inside_) {
-    const Grip& grip = grips[g];
-    if (i == last || !grip.active(time)) continue;
+    if (i == last || !grips[g].active(time)) continue;
     last = i;
-    if (grip.release && !grip.motion.keys.empty() && time > grip.motion.keys.back().time) continue;
-    each(i, g);
+    if (holds_at(grips[g], time)) each(i, g);
   }
+}
+
+std::vector<HeldBox> GrippedNodes::boxes(const std::vector<Grip>& grips, double time) {
+  std::vector<HeldBox> all;
+  for (const Grip& grip : grips)
+    if (grip.active(time))
+      all.push_back({grip.lo, grip.hi, holds_at(grip, time) && (!grip.motion.keys.empty() || grip.from <= 0)});
+  return all;
 }
 
 void GrippedNodes::place(const std::vector<Grip>& grips, const NodeSet& nodes, double time,

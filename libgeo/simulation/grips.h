@@ -25,6 +25,11 @@ class GrippedNodes {
   void place(const std::vector<Grip>& grips, const NodeSet& nodes, double time, std::vector<std::uint8_t>& fixed,
              State& motion) const;
 
+  /// The boxes of the grips that exist at `time`, for Solid::hold(), in the scene's order. A grip
+  /// without keys that begins after time 0 holds nodes where they then are, and one that has
+  /// released its nodes holds none: no rigid motion.
+  static std::vector<HeldBox> boxes(const std::vector<Grip>& grips, double time);
+
   /// Gives held nodes of moving grips the mean velocity of their grip from `begin` to `end`.
   void set_velocities(const std::vector<Grip>& grips, const NodeSet& nodes, double begin, double end,
                       State& motion) const;

@@ -79,6 +79,7 @@ struct Simulation::Impl {
   void restore(Body new_body, RunState new_state);
   void reset_contact();
   void reset_environment();
+  void hold_material(double time);
 
   void apply_changes(double time);
   void step(const TimeStep& step, FrameStats& stats);
@@ -123,6 +124,7 @@ Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
       solid(body, materials_of(scene, state.body_index)),
       obstacles(scene) {
   reset_contact();
+  hold_material(state.time);
   apply_changes(state.time);
 }
 
@@ -131,6 +133,7 @@ void Simulation::Impl::restore(Body new_body, RunState new_state) {
   if (std::exchange(cut_since_build, false)) solid = Solid(body, materials_of(scene, state.body_index));
   obstacles = Obstacles(scene), environment = {}, wedge = {}, pull = {};
   reset_contact();
+  hold_material(state.time);
   changes.revert(scene);
   apply_changes(state.time);
 }
@@ -167,6 +170,9 @@ void Simulation::Impl::reset_environment() {
     if (const auto v = body.binding.closest[i]; v.valid() && body.surface.alive(v))
       environment.clearance[i] = (body.surface.point(body.surface.site(v)) - body.nodes.position[i]).norm();
 }
+
+// In the boxes of the grips at a time. Precondition: the solid's points are up to date.
+void Simulation::Impl::hold_material(double time) { solid.hold(body, GrippedNodes::boxes(scene.grips, time)); }
 
 // Updates mechanics and contact after a crack step. `plan`: of the surface, empty without
 // self-contact.
@@ -332,6 +338,7 @@ void Simulation::Impl::integrate(const TimeStep& step, FrameStats& stats) {
   Stopwatch watch;
   const double dt = step.dt, share = dt * scene.frame_rate;
   solid.update_points(body, state.motion);
+  hold_material(step.end);
   const StepReport report = scene.implicit ? solid.step_implicit(state.motion, dt, environment, scene.accuracy)
                                            : solid.step_explicit(state.motion, dt, environment);
   gripped.set_velocities(scene.grips, body.nodes, step.begin, step.end, state.motion);

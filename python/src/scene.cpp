@@ -135,6 +135,7 @@ std::shared_ptr<const Scene> scene_argument(py::handle object, geo::SceneOverrid
   auto given = py::str(py::module_::import("os").attr("fspath")(object)).cast<std::string>();
   if (py::isinstance<py::str>(object) && given.find('\n') != given.npos)
     return parsed(std::move(given), "scene", "", std::move(overrides));
+  if (given.find('\0') != given.npos) throw geo::InputError("scene: its path holds a zero byte; give another one");
   auto text = geo::read_all(given);
   const auto folder = std::filesystem::path(given).parent_path().string();
   return parsed(std::move(text), std::move(given), folder, std::move(overrides));

@@ -2,6 +2,7 @@
 // the one that the solid knows.
 #include "solid.h"
 
+#include "arrays.h"
 #include "bind.h"
 #include "kerf/error.h"
 #include "material.h"
@@ -69,6 +70,22 @@ void update_points(DeformingSolid& self, Body& body, State& state) {
   without_gil([&] { self.solid.update_points(body.body, state.state); });
   self.points_due = false;
   state.changed();
+}
+
+void hold(DeformingSolid& self, Body& body, py::object boxes) {
+  const Writing writing(self.busy);
+  const Reading reading(body.busy);
+  if (self.body != body.id || self.version != body.version)
+    throw geo::InputError("body: is another one, or the solid has not followed its changes");
+  if (self.points_due) throw geo::InputError("the solid was updated by update_nodes(); call update_points() first");
+  const auto [shape, values] = values_from(boxes, "boxes", 2, 2);
+  if (shape[1] != 6) throw geo::InputError("boxes: give rows of x0, y0, z0, x1, y1, z1");
+  std::vector<geo::HeldBox> held(shape[0]);
+  for (std::size_t b = 0; b < held.size(); ++b) {
+    const double* const row = values.data() + 6 * b;
+    held[b] = {geo::Vec3(row[0], row[1], row[2]), geo::Vec3(row[3], row[4], row[5]), true};
+  }
+  without_gil([&] { self.solid.hold(body.body, held); });
 }
 
 std::vector<geo::NodeId> ids_of(py::handle object, const char* name, std::size_t nodes) {
@@ -140,6 +157,12 @@ void add_construction(Solids& solid) {
           "First half of update(), after each of several changes; update_points() must follow.")
       .def("update_points", &update_points, py::arg("body"), py::arg("state"),
            "Second half of update(), once after several changes. Raises InputError.")
+      .def("hold", &hold, py::arg("body"), py::arg("boxes"),
+           "Holds the material in boxes: it follows the rigid motion of the nodes in its box, for steps that fix\n"
+           "these nodes. boxes: (k, 6) rows of x0, y0, z0, x1, y1, z1 in material coordinates; np.empty((0, 6)):\n"
+           "none. They replace those of the last call. A box without four nodes that span a tetrahedron, and any\n"
+           "box with 'mueller04', holds its nodes only. Raises InputError where a box has a negative side, and\n"
+           "where changes of the body were not followed.")
       .def("update_graph", &update_graph, py::arg("graph"), py::arg("donors"), py::arg("updated"), py::arg("state"),
            "As update(), of a solid that was made of a graph. donors: (new,) for each new node, which come last, an "
            "old\n"

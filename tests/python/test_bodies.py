@@ -375,6 +375,38 @@ class Solids(unittest.TestCase):
         scratch = kerf.DeformingSolid(body, kerf.Material())
         self.assertEqual(scratch.energy(state), deforming.energy(state))
 
+    def test_held_material(self):
+        body = kerf.Body(solid(), spacing=0.2)
+        deforming = kerf.DeformingSolid(body, kerf.Material(young=1e5))
+        positions, box, none = body.nodes.positions, [-1, -1, -1, 0.35, 2, 2], np.empty((0, 6))
+        fixed = positions[:, 0] <= 0.35
+        u = 0.05 * np.sin(3 * positions) * ~fixed[:, None]
+        plain = deforming.energy(u)
+
+        def sag():
+            state = deforming.rest()
+            environment = kerf.Environment(gravity=(0, 0, -1), fixed=fixed)
+            for _ in range(3):
+                deforming.step_implicit(state, 10, environment)
+            return -state.displacement[:, 2].min()
+
+        of_nodes = sag()
+        deforming.hold(body, [box])
+        self.assertGreater(deforming.energy(u), 1.01 * plain)
+        turned = positions @ np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]) - positions
+        self.assertLess(deforming.energy(turned), 1e-9 * plain)
+        self.assertLess(sag(), of_nodes)
+        held = deforming.energy(u)
+        deforming.hold(body, [box])  # the same boxes
+        self.assertEqual(deforming.energy(u), held)
+        deforming.hold(body, none)
+        self.assertEqual(deforming.energy(u), plain)
+        for bad in (box, [box[:5]], [box[::-1]], [[np.nan] * 6]):
+            with self.assertRaises(kerf.InputError, msg=str(bad)):
+                deforming.hold(body, bad)
+        with self.assertRaisesRegex(kerf.InputError, "another"):
+            deforming.hold(kerf.Body(solid(), spacing=0.3), [box])
+
     def test_refused(self):
         body = kerf.Body(solid(), spacing=0.3)
         deforming = kerf.DeformingSolid(body, kerf.Material())

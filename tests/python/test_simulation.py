@@ -76,6 +76,8 @@ class Scenes(unittest.TestCase):
             kerf.Scene("none.toml")
         with self.assertRaises(kerf.InputError):
             kerf.Scene("not\ntoml")
+        with self.assertRaisesRegex(kerf.InputError, "zero byte"):
+            kerf.Scene("\0")
 
 
 class Runs(unittest.TestCase):

@@ -95,6 +95,12 @@ TEST_CASE("grips hold the nodes in their boxes, move them, and release them", "[
   CHECK(state.velocity[2] == Vec3(8, 8, 8));
   gripped.place(grips, nodes, 1.5, fixed, state);
   CHECK(fixed == std::vector<std::uint8_t>{0, 0, 1, 0});
+  // Material follows a box that moves, or that holds from the start; the released one keeps node 1.
+  grips.push_back({{4, -1, -1}, {6, 1, 1}, {}, false, 1.2});
+  const auto boxes = GrippedNodes::boxes(grips, 1.5);
+  REQUIRE(boxes.size() == 3);
+  CHECK((!boxes[0].rigid && boxes[1].rigid && !boxes[2].rigid));
+  CHECK((GrippedNodes::boxes(grips, 1).size() == 2 && GrippedNodes::boxes(grips, 1)[0].rigid));
 }
 
 TEST_CASE("edge fronts are refined, collapsed, split and joined by their parameters", "[scene]") {

@@ -6,6 +6,7 @@
 #include "kerf/mesh.h"
 #include "kerf/pieces.h"
 #include "kerf/simulation.h"
+#include "simulation/kept_run.h"
 
 using namespace geo;
 
@@ -141,6 +142,8 @@ TEST_CASE("a grip carries the nodes that it holds, and lets go") {
       CHECK((sim.state().motion.velocity[i] - Vec3(0, 0, 0.5)).norm() < 1e-9);
     }
   CHECK(held > 0);
+  const auto energy = [](const Simulation& run) { return run.solid().energy(run.state().motion.displacement); };
+  CHECK(energy(read_back(scene, bytes(sim))) == energy(sim));  // held material, too
   const Vec3 before = sim.state().motion.displacement.back();
   sim.advance_frame();
   CHECK(sim.state().motion.displacement.back() != before);

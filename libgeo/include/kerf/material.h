@@ -1,4 +1,5 @@
-// Materials of a deforming solid: parameters, hyperelastic energy density and stress.
+// Materials of a deforming solid: parameters, hyperelastic energy density and stress; boxes that
+// hold material.
 #pragma once
 
 #include <algorithm>
@@ -89,6 +90,14 @@ class Materials {
  private:
   std::vector<Material> table_;
   std::vector<std::uint16_t> index_of_node_;  // empty if there is one material
+};
+
+/// Material that follows a rigid motion: that of the fixed nodes in the box.
+struct HeldBox {
+  Vec3 lo = Vec3::Zero(), hi = Vec3::Zero();  ///< corners, material coordinates
+  bool rigid = true;  ///< false: its nodes do not move as a rigid body, so the material between them is left alone
+  /// Equality of all members.
+  friend bool operator==(const HeldBox&, const HeldBox&) = default;
 };
 
 }  // namespace geo

@@ -90,6 +90,12 @@ class Solid {
   void update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
               std::span<const NodeId> updated, State& state);
 
+  /// Imposes the motion of the nodes in boxes on the material there, for steps that fix these nodes
+  /// (Environment::fixed). Replaces the boxes of the last call; a node in several belongs to the
+  /// first. A box without four nodes that span a tetrahedron, and any box with mueller04, holds its
+  /// nodes only. Call it after update_points(). Throws InputError where a box has lo > hi.
+  void hold(const Body& body, std::span<const HeldBox> boxes);
+
   /// Replaces the materials by others of the same table size, assignment to nodes, densities and
   /// discretisation. Throws InputError for any other table.
   void set_materials(const Materials& materials);

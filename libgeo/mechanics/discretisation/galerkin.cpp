@@ -192,6 +192,7 @@ struct BlockUpdate {
       return;
     }
     changes.new_block[same_block] = number;
+    changes.same_points[same_block] = stale.empty();
     for (const auto i : stale)
       for (const PointBlock* block : {&now, &old[same_block]})
         for (auto q = block->entry_begin[i]; q < block->entry_begin[i + 1]; ++q)
@@ -273,6 +274,7 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points)
   });
   points.number_points(body.nodes.size());
   result.node_changed.assign(body.nodes.size(), 0), result.new_block.assign(old.size(), ~0u);
+  result.same_points.assign(old.size(), 0);
   for (std::uint32_t b = 0; b < updates.size(); ++b) updates[b].record(b, points.blocks[b], old, result);
   for (std::size_t o = 0; o < old.size(); ++o)
     if (result.new_block[o] == ~0u)

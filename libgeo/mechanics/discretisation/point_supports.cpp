@@ -175,7 +175,8 @@ struct Batch {
       if (!node) continue;
       shape.nodes.push_back(scratch.nodes[q]), shape.bent.push_back(scratch.hidden[q]), scratch.seen.push_back(*node);
     }
-    const double condition = shape_gradients(x, scratch.seen, shape.gradient);
+    const double condition =
+        shape_gradients(x, scratch.seen, shape.gradient, task.with_values ? &shape.value : nullptr);
     point.quality = condition <= ill_conditioned  ? MomentQuality::good
                     : condition <= without_strain ? MomentQuality::poor
                                                   : MomentQuality::singular;

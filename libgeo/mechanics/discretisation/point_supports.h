@@ -66,6 +66,7 @@ struct SupportTask {
   ShapeGradients* shape;
   const PointBlock* before = nullptr;
   std::size_t point_before = 0;
+  bool with_values = false;  ///< whether ShapeGradients::value is computed, too
 };
 /// Computes the shape gradients, and all members of the points except volumes. Consecutive tasks
 /// should be near each other. `occluders`: those of the whole surface; null: nearby ones are

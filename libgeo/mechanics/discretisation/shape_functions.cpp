@@ -15,11 +15,13 @@ SupportNode direct_support(const Vec3& x, const Vec3& node, double support) {
   return {node, distance, distance > 0 ? Vec3(offset / distance) : Vec3(Vec3::Zero()), support};
 }
 
-double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::vector<Vec3>& gradient) {
+double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::vector<Vec3>& gradient,
+                       std::vector<double>* value) {
   using Vec4 = Eigen::Vector4d;
   using Mat4 = Eigen::Matrix4d;
   constexpr double infinite = std::numeric_limits<double>::infinity();
   gradient.clear();
+  if (value) value->clear();
   const std::size_t n = nodes.size();
   if (n < 4) return infinite;
   double scale = 0;
@@ -65,6 +67,8 @@ double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::v
   for (std::size_t j = 1; j < n; ++j)
     if (w[j] > w[heaviest]) heaviest = j;
   gradient[heaviest] -= sum;
+  if (value)
+    for (std::size_t j = 0; j < n; ++j) value->push_back(w[j] * b.dot(p[j]));
   return eigenvalues[3] / eigenvalues[0];
 }
 

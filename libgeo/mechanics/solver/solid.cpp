@@ -82,6 +82,12 @@ void Solid::update_points(const Body& body, State& state) {
   d.update_quadrature_points(body, state, cache_->inverses);
 }
 
+void Solid::hold(const Body& body, std::span<const HeldBox> boxes) {
+  for (const HeldBox& box : boxes)
+    if (!(box.lo.array() <= box.hi.array()).all()) throw InputError("a held box has lo > hi; exchange its corners");
+  discretisation_->hold(body, boxes);
+}
+
 void Solid::set_materials(const Materials& materials) {
   SolidDiscretisation& d = *discretisation_;
   bool same = materials.count() == d.materials.count() && materials.fits(size());

@@ -51,10 +51,12 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
   PointChanges changes;
   parallel_invoke([&] { aggregates = Aggregates(position, mls, component, components); },
                   [&] {
+                    held.restore(points);
                     changes = galerkin->rebuild_changed(body, points);
                     points.set_materials(materials);
                     inverses.update(subdomains, subdomains.update({position, mls, spacing, points}, changed, changes));
                   });
+  apply_held(body, &changes);
   changed.clear();
   const auto& point_before = changes.old_point;
   if (state.plastic.empty() || point_before.empty()) return;
@@ -62,6 +64,19 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
   for (std::size_t i = 0; i < plastic.size(); ++i)
     if (point_before[i] != ~0u) plastic[i] = state.plastic[point_before[i]];
   state.plastic.swap(plastic);
+}
+
+void SolidDiscretisation::hold(const Body& body, std::span<const HeldBox> boxes) {
+  if (!galerkin || !held.set_boxes(boxes)) return;
+  held.restore(points);
+  points.number_points(size());
+  apply_held(body, nullptr);
+}
+
+void SolidDiscretisation::apply_held(const Body& body, const PointChanges* changes) {
+  if (!held.apply(body, component, changes, points)) return;
+  points.number_points(size());
+  points.set_materials(materials);
 }
 
 void SolidDiscretisation::build_preconditioner_levels() {

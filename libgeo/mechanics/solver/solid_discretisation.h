@@ -11,6 +11,7 @@
 #include "kerf/material.h"
 #include "kerf/solid.h"
 #include "mechanics/discretisation/galerkin.h"
+#include "mechanics/discretisation/held_material.h"
 #include "mechanics/discretisation/nodal_gradients.h"
 #include "mechanics/discretisation/point_lanes.h"
 #include "mechanics/solver/aggregates.h"
@@ -37,6 +38,7 @@ struct SolidDiscretisation {
   Subdomains subdomains;                 ///< of the Schwarz preconditioner
   MaterialPoints points;                 ///< quadrature points, or one point a node (mueller04)
   std::optional<Galerkin> galerkin;      ///< quadrature cells; none with mueller04
+  HeldMaterial held;                     ///< points near boxes that are held; only with quadrature cells
   std::optional<ModePenalty> penalty;    ///< on modes that nodal strains do not see; only with mueller04
   std::vector<char> changed;  ///< per node: 1 if its position, spacing or gradient changed since update_points()
 
@@ -64,6 +66,8 @@ struct SolidDiscretisation {
   /// subdomains stay valid; the plastic strain of `state` stays with its points. Precondition:
   /// galerkin->has_changes().
   void update_quadrature_points(const Body& body, State& state, SubdomainInverses& inverses);
+  /// Imposes the motion of boxes on their material. The preconditioner keeps the plain basis.
+  void hold(const Body& body, std::span<const HeldBox> boxes);
   /// Builds subdomains and aggregates from scratch.
   void build_preconditioner_levels();
 
@@ -79,6 +83,7 @@ struct SolidDiscretisation {
   void update_plasticity(State& state, double dt) const;
 
  private:
+  void apply_held(const Body& body, const PointChanges* changes);
   void number_new_components(const VisibilityGraph& graph, std::size_t first_new);
 };
 

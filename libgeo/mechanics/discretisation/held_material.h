@@ -1,0 +1,60 @@
+// Essential boundary conditions on the material in boxes: a boundary-corrected basis near them
+// (Kantorovich and Krylov 1958; Rvachev and Sheiko 1995).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kerf/body.h"
+#include "kerf/material.h"
+#include "mechanics/discretisation/material_points.h"
+
+namespace geo {
+
+/// Replaces the shape gradients of material points in and near held boxes, and restores them.
+///
+/// Moving least squares do not interpolate: with the nodes in a box held, the material in it still
+/// moves, and the solid acts as if the box ended a node spacing farther in. Here the field near a
+/// box is u = ū + w Σ φ_j (u_j − ū(x_j)) over the nodes outside. ū is the rigid motion of the box.
+/// w rises from 0 on the box to 1 at a node spacing from it.
+class HeldMaterial {
+ public:
+  /// Sets the boxes. Returns false if they are the same as before; else call restore(), apply().
+  bool set_boxes(std::span<const HeldBox> boxes);
+  /// Puts back the shape gradients of the plain basis. Keeps results of apply() for the next one.
+  void restore(MaterialPoints& points);
+  /// Replaces blocks of points near boxes. Precondition: `points` have the plain basis, numbered or
+  /// not. `component`: per node, of the visibility graph. `changes`: of the points since restore();
+  /// null: none. The result depends on body, boxes and components alone. Returns whether any block
+  /// is replaced; then the points are to be numbered.
+  bool apply(const Body& body, const std::vector<std::uint32_t>& component, const PointChanges* changes,
+             MaterialPoints& points);
+
+ private:
+  /// Four nodes of a box and a component. Their displacements give the rigid motion ū as
+  /// Σ λ_a(x) u_a, with λ = coordinates · (1, x).
+  struct Anchors {
+    std::uint32_t box, component;
+    std::array<std::uint32_t, 4> node;
+    Eigen::Matrix4d coordinates;
+    friend bool operator==(const Anchors&, const Anchors&) = default;
+  };
+  struct Replaced {
+    std::uint32_t block;
+    PointBlock plain, held;
+  };
+  struct Shapes;
+
+  std::vector<Anchors> anchors_of(const Body& body, const std::vector<std::uint32_t>& component) const;
+  void replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const std::uint32_t> blocks,
+               MaterialPoints& points);
+
+  std::vector<HeldBox> boxes_;
+  std::vector<std::uint32_t> box_of_node_;  // per node: the first box that holds it, or ~0u
+  std::vector<Anchors> anchors_;            // by box, then by component
+  std::vector<Replaced> replaced_;          // ascending; between restore() and apply() `plain` is empty
+};
+
+}  // namespace geo

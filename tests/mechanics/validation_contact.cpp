@@ -89,9 +89,7 @@ std::vector<Finding> hertz(int size) {
     found.push_back(
         {"Sphere between two plates, nodes " + std::to_string(spacing).substr(0, 4) + " radii apart: force, N",
          "F = 4/3 E / (1 − ν²) √R δ^1.5 (Hertz)", press.close(depth), 4.0 / 3 * stiff * std::pow(depth, 1.5),
-         spacing > 0.12   ? 0.25
-         : spacing > 0.08 ? 0.15
-                          : 0.1});
+         spacing > 0.12 ? 0.2 : 0.06});
   }
   return found;
 }

@@ -134,7 +134,7 @@ Scene bar_scene(std::uint64_t seed) {
 TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same seed breaks it the same way",
           "[fracture]") {
   std::vector<std::vector<Vec3>> broken;
-  for (const std::uint64_t seed : {1, 2, 7, 8, 1}) {
+  for (const std::uint64_t seed : {1, 2, 7, 8, 63, 97, 1}) {
     Scene scene = bar_scene(seed);
     scene.fracture.max_cracks = 1;
     Simulation sim = stretched_bar(scene, 0.02);
@@ -171,7 +171,7 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
     }
     CHECK(there < 1.1 * weakest);
   }
-  CHECK(broken[0] == broken[4]);
+  CHECK(broken.front() == broken.back());
   CHECK(broken[0] != broken[1]);
 }
 

@@ -10,6 +10,10 @@
 namespace geo {
 namespace {
 
+// Largest gradient of a diffraction distance. As a point and a node come closer behind a front, the
+// exact gradient grows without bound, over less material than a quadrature point stands for.
+constexpr double steepest = 4;
+
 bool lexicographically_less(const Vec3& a, const Vec3& b) {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
@@ -108,8 +112,9 @@ std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, d
   if (!(stretch * straight < support)) return {};
   // The bend point of a shortest path is stationary: its own motion does not change the length to
   // first order.
-  return SupportNode{node, stretch * straight,
-                     4 * stretch / ratio * (x - path->bend).normalized() - 3 * stretch / straight * offset, support};
+  Vec3 gradient = 4 * stretch / ratio * (x - path->bend).normalized() - 3 * stretch / straight * offset;
+  if (const double norm = gradient.norm(); norm > steepest) gradient *= steepest / norm;
+  return SupportNode{node, stretch * straight, gradient, support};
 }
 
 }  // namespace geo

@@ -40,8 +40,10 @@ std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const 
 /// A node that `faces` hide from x, as x sees it round one of the edges. With s the straight
 /// distance and L the length of the shortest path round an edge, its distance is (L / s)⁴ s. None
 /// if that is `support` or more, or if there is no path. Powers of 1 and 2, as in the original
-/// criterion, weld a crack behind its front at supports of 1.8 spacings (docs/decisions/041). A
-/// path bends `support` / 1024 ahead of an edge, so that it clears the crack face behind it. Both
+/// criterion, weld a crack behind its front at supports of 1.8 spacings (docs/decisions/041). The
+/// distance's gradient is scaled down to a norm of 4 where it is larger (docs/decisions/061).
+///
+/// A path bends `support` / 1024 ahead of an edge, so that it clears the crack face behind it. Both
 /// of its segments are clear of faces (exact), so no path crosses a crack that has no front.
 /// `fronts`: those of fronts_near() for a reach of `support` or more.
 std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,

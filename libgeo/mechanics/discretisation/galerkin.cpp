@@ -88,14 +88,15 @@ void set_position(const Body& body, const Vec3& intended, MaterialPoint& point) 
   point.position = moved_off_faces(body, intended), point.influence_radius = (point.position - intended).norm();
 }
 
-// Per cell, the index of the same cell before, or ~0u (none). Both lists are in Morton order.
+// Per cell, the index of the same cell before, or ~0u (none). Both lists are in Morton order, then
+// by `half`.
 std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::span<const QuadratureCell> before) {
   std::vector<std::uint32_t> same;
   std::size_t o = 0;
   for (const QuadratureCell& c : now) {
-    while (o < before.size() && morton(before[o].cell.corner) < morton(c.cell.corner)) ++o;
-    const bool found =
-        o < before.size() && before[o].cell.corner == c.cell.corner && before[o].cell.level == c.cell.level;
+    const auto place = [](const QuadratureCell& q) { return std::pair(morton(q.cell.corner), q.half); };
+    while (o < before.size() && place(before[o]) < place(c)) ++o;
+    const bool found = o < before.size() && place(before[o]) == place(c) && before[o].cell.level == c.cell.level;
     same.push_back(found ? static_cast<std::uint32_t>(o) : ~0u);
   }
   return same;

@@ -1,6 +1,6 @@
-// Each point tries the support factors in turn until it sees enough nodes with a well-conditioned
-// moment matrix. Exact segment–triangle tests decide which nodes it sees; after a cut, only where a
-// changed face touches the line of sight, or the node has changed.
+// Each point tries the support factors in turn until it sees enough nodes, with a well-conditioned
+// moment matrix and no steep shape function. Exact segment–triangle tests decide which nodes it
+// sees; after a cut, only where a changed face touches the line of sight, or the node has changed.
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>
@@ -15,7 +15,10 @@ namespace {
 
 constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its support: a linear basis needs 4
 constexpr double ill_conditioned = 500;  // and so does one with a larger condition number; larger: fewer are widened
-constexpr double without_strain = 1e7;   // times the rounding unit 1e-16: linear fields would be off by 1e-9
+// So does a point from which a face hides nodes, if a shape gradient is steeper than this, in units
+// of 1 / support radius (docs/decisions/061).
+constexpr double steepest_shape = 4;
+constexpr double without_strain = 1e7;  // times the rounding unit 1e-16: linear fields would be off by 1e-9
 constexpr std::size_t tasks_per_batch = 32;
 
 bool is_on_face(const Complex& surface, const Vec3& p) {
@@ -146,7 +149,13 @@ struct Batch {
     return trial.factor * largest;
   }
 
-  // True if the point sees enough nodes.
+  static bool is_steep(const ShapeGradients& shape, std::span<const SupportNode> nodes) {
+    for (std::size_t j = 0; j < nodes.size(); ++j)
+      if (shape.gradient[j].norm() * nodes[j].support > steepest_shape) return true;
+    return false;
+  }
+
+  // True if the point sees enough nodes, and its shape functions are usable.
   bool compute(const Trial& trial, Scratch& scratch) const {
     const auto& [body, task, factor, faces, changes] = trial;
     MaterialPoint& point = *task.point;
@@ -180,7 +189,8 @@ struct Batch {
     point.quality = condition <= ill_conditioned  ? MomentQuality::good
                     : condition <= without_strain ? MomentQuality::poor
                                                   : MomentQuality::singular;
-    const bool enough = shape.nodes.size() >= enough_nodes && point.quality == MomentQuality::good;
+    const bool enough = shape.nodes.size() >= enough_nodes && point.quality == MomentQuality::good &&
+                        !(point.occluded && is_steep(shape, scratch.seen));
     if (point.quality == MomentQuality::singular) shape.nodes.clear(), shape.gradient.clear(), shape.bent.clear();
     return enough;
   }

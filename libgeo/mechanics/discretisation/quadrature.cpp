@@ -1,6 +1,8 @@
 // Whole cell of edge a: four alternate corners of the cube of half edge a/√12, half of the 2³ Gauss
-// rule. Cut cell: stratified samples give volume, mean m and covariance C; its points are
-// m + C^½ t_k, with t_k the alternate corners of [−1, 1]³.
+// rule; beside finer cells, eight corners of the cube of half edge a/4. Cut cell: stratified
+// samples give volume, mean m and covariance C.
+//
+// The points of a cut cell are m + C^½ t_k, with t_k the alternate corners of [−1, 1]³.
 #include "mechanics/discretisation/quadrature.h"
 
 #include <Eigen/Eigenvalues>
@@ -22,12 +24,37 @@ Vec3 tetrahedron_corner(int k, bool mirrored) {
   return {corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0};
 }
 
+// The even lattice of 2³ points in a whole cell beside finer ones. Shape functions of finer nodes
+// are smooth and end inside the cell; equal distances of points integrate such functions better
+// than Gauss points (docs/decisions/061).
+std::array<QuadratureCell, 2> make_halves(const Lattice& lattice, const Region& region) {
+  const double edge = lattice.edge(region.cell.level);
+  std::array<QuadratureCell, 2> halves;
+  for (std::uint8_t h = 0; h < 2; ++h) {
+    halves[h] = {region.cell, true, static_cast<std::uint8_t>(h + 1), 0.5 * edge * edge * edge, {}};
+    for (int k = 0; k < 4; ++k)
+      halves[h].point[static_cast<std::size_t>(k)] = region.probe + 0.25 * edge * tetrahedron_corner(k, h == 1);
+  }
+  return halves;
+}
+
+// Calls visit() for each of the 26 neighbours of a cell inside the root cell.
+template <class Visit>
+void each_neighbor(const Cell& cell, int root, const Visit& visit) {
+  const std::int32_t edge = std::int32_t(1) << cell.level, end = std::int32_t(1) << root;
+  for (int k = 0; k < 27; ++k) {
+    Cell n = cell;
+    n.corner[0] += (k % 3 - 1) * edge, n.corner[1] += (k / 3 % 3 - 1) * edge, n.corner[2] += (k / 9 - 1) * edge;
+    if (k != 13 && std::all_of(n.corner.begin(), n.corner.end(), [&](auto c) { return c >= 0 && c < end; })) visit(n);
+  }
+}
+
 // A cell with its points; its volume is zero if no sample is inside.
 QuadratureCell make_cell(const RegionTree& tree, const Lattice& lattice, const Region& region) {
   const double edge = lattice.edge(region.cell.level);
   const auto& c = region.cell.corner;
   const bool mirrored = (c[0] ^ c[1] ^ c[2]) >> region.cell.level & 1;
-  QuadratureCell cell{region.cell, !region.cut(), edge * edge * edge, {}};
+  QuadratureCell cell{region.cell, !region.cut(), 0, edge * edge * edge, {}};
   if (cell.whole) {
     for (int k = 0; k < 4; ++k)
       cell.point[static_cast<std::size_t>(k)] = region.probe + edge / std::sqrt(12.0) * tetrahedron_corner(k, mirrored);
@@ -124,9 +151,21 @@ QuadratureCells::QuadratureCells(const Body& body) {
 std::function<bool(const Region&, std::vector<QuadratureCell>&)> QuadratureCells::visitor() const {
   return [this](const Region& region, std::vector<QuadratureCell>& found) {
     if (region.cell.level > 0 && is_divided(divided_, region.cell)) return true;
+    if (!region.cut() && is_beside_divided(region.cell)) {
+      for (const QuadratureCell& half : make_halves(lattice_, region)) found.push_back(half);
+      return false;
+    }
     if (const QuadratureCell cell = make_cell(*skin_, lattice_, region); cell.volume > 0) found.push_back(cell);
     return false;
   };
+}
+
+// Whether a neighbour of the same size, corners included, is divided.
+bool QuadratureCells::is_beside_divided(const Cell& cell) const {
+  if (divided_[static_cast<std::size_t>(cell.level)].empty()) return false;
+  bool found = false;
+  each_neighbor(cell, root_, [&](const Cell& n) { found = found || is_divided(divided_, n); });
+  return found;
 }
 
 // Per level, the Morton codes of cells that hold a node of a finer spacing.
@@ -166,21 +205,45 @@ void QuadratureCells::scale_volumes(const NodeSet& nodes) {
     if (!cut_only || !c.whole) c.volume *= scale;
 }
 
+// Cells to visit again: those whose division differs from `before`, and their neighbours, the
+// points of which depend on it. No cell lies in another one. A neighbour in an undivided cell is no
+// cell of the octree.
+Divisions QuadratureCells::changed_cells(const Divisions& before) const {
+  Divisions changed(divided_.size());
+  for (int level = root_; level > 0; --level) {
+    const auto l = static_cast<std::size_t>(level);
+    std::vector<std::uint64_t> codes, all;
+    std::set_symmetric_difference(before[l].begin(), before[l].end(), divided_[l].begin(), divided_[l].end(),
+                                  std::back_inserter(codes));
+    all = codes;
+    for (const auto code : codes)
+      each_neighbor({corner_of(code), level}, root_, [&](const Cell& n) {
+        if (!is_divided(divided_, n)) all.push_back(morton(n.corner));
+      });
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    std::erase_if(all, [&](auto code) {
+      if (level < root_ && !std::binary_search(divided_[l + 1].begin(), divided_[l + 1].end(),
+                                               code >> 3 * (level + 1) << 3 * (level + 1)))
+        return true;
+      for (int above = level + 1; above <= root_; ++above) {
+        const auto& coarser = changed[static_cast<std::size_t>(above)];
+        if (std::binary_search(coarser.begin(), coarser.end(), code >> 3 * above << 3 * above)) return true;
+      }
+      return false;
+    });
+    changed[l] = std::move(all);
+  }
+  return changed;
+}
+
 bool QuadratureCells::update(const Body& body) {
   const Divisions before = std::exchange(divided_, divisions(body.nodes));
   if (divided_ == before) return false;
-  // The coarsest cells whose division has changed are visited again.
   std::vector<Cell> changed;
-  for (int level = root_; level > 0; --level) {
-    const auto l = static_cast<std::size_t>(level);
-    std::vector<std::uint64_t> codes;
-    std::set_symmetric_difference(before[l].begin(), before[l].end(), divided_[l].begin(), divided_[l].end(),
-                                  std::back_inserter(codes));
-    for (const auto code : codes)
-      if (std::none_of(changed.begin(), changed.end(),
-                       [&](const Cell& c) { return code >> 3 * c.level == morton(c.corner) >> 3 * c.level; }))
-        changed.push_back({corner_of(code), level});
-  }
+  const Divisions codes = changed_cells(before);
+  for (int level = 0; level <= root_; ++level)
+    for (const auto code : codes[static_cast<std::size_t>(level)]) changed.push_back({corner_of(code), level});
   std::sort(changed.begin(), changed.end(),
             [](const Cell& a, const Cell& b) { return morton(a.corner) < morton(b.corner); });
   std::vector<QuadratureCell> merged;

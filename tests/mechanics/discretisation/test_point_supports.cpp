@@ -78,3 +78,31 @@ TEST_CASE("a crack through the body hides the nodes behind it, and a point on a 
   CHECK(moved.x() != 0.5);
   CHECK((moved - on_crack).norm() < 0.1);
 }
+
+TEST_CASE("points beside a crack have no steep shape functions while their support can be widened", "[supports]") {
+  constexpr std::uint64_t first = 1, count = 40;
+  std::size_t steep = 0, widest = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    INFO("seed " << seed);
+    Random random(seed);
+    Body body = block_body({1, 1, 1}, 0.2);
+    const double x = random.uniform(0.3, 0.7), tilt = random.uniform(-0.2, 0.2);
+    const Vec3 a(x, -0.2, 1.1), b(x + tilt, 1.2, 1.1), step(0, 0, -random.uniform(0.1, 0.4));
+    auto front = begin_front(blade_at(a, b, step, 0, 5), false, 1);
+    for (int k = 1; k <= 2; ++k) split(body, front, blade_at(a, b, step, k, 5));
+    for (const auto& [point, shape] : supports(body, random_positions(random, 200))) {
+      if (!point.occluded || point.quality != MomentQuality::good) continue;
+      double largest = 0;
+      for (std::size_t q = 0; q < shape.nodes.size(); ++q)
+        largest = std::max(largest, shape.gradient[q].norm() * body.nodes.radius[shape.nodes[q]]);
+      const double factor = support_factors[point.widenings];
+      steep += point.widenings > 0;
+      if (factor < support_factors.back())
+        CHECK(factor * largest <= 4 * (1 + 1e-12));
+      else
+        ++widest;
+    }
+  }
+  CHECK(steep > 30);
+  CHECK(widest < steep);
+}

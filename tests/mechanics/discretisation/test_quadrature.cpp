@@ -70,7 +70,32 @@ TEST_CASE("an update after finer nodes gives the cells of a build from scratch",
   REQUIRE(cells.cells().size() == scratch.cells().size());
   for (std::size_t k = 0; k < scratch.cells().size(); ++k) {
     const QuadratureCell &a = cells.cells()[k], &b = scratch.cells()[k];
-    CHECK(
-        (a.cell.corner == b.cell.corner && a.cell.level == b.cell.level && a.volume == b.volume && a.point == b.point));
+    CHECK((a.cell.corner == b.cell.corner && a.cell.level == b.cell.level && a.half == b.half && a.volume == b.volume &&
+           a.point == b.point));
   }
+}
+
+TEST_CASE("whole cells beside finer ones appear twice, with an even lattice of eight points", "[quadrature]") {
+  SampleOptions options;
+  options.spacing = 0.08, options.levels = 2;
+  const TriangleMesh mesh = make_block({1, 1, 1}, 0.2);
+  const QuadratureCells all(build_body(Complex::from_skin(mesh), sample_nodes(mesh, options)));
+  const auto& cells = all.cells();
+  std::size_t twice = 0;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (cells[k].half != 1) continue;
+    ++twice;
+    REQUIRE(k + 1 < cells.size());
+    REQUIRE(cells[k + 1].half == 2);
+    REQUIRE(cells[k + 1].cell.corner == cells[k].cell.corner);
+    CHECK(cells[k].volume == cells[k + 1].volume);
+    const double edge = std::cbrt(2 * cells[k].volume);
+    for (std::size_t i = 0; i < 8; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 offset = cells[k + i / 4].point[i % 4] - cells[k + j / 4].point[j % 4];
+        for (int a = 0; a < 3; ++a) CHECK((std::abs(offset[a]) < 1e-12 || std::abs(offset[a]) == Approx(edge / 2)));
+        CHECK(offset.norm() > 0.4 * edge);
+      }
+  }
+  CHECK(twice > 50);
 }

@@ -1,7 +1,9 @@
 """Large deformations in Kerf beside CalculiX. Run by tests/reference/run.
 
 Prints a table as in docs/validation.md. Exit code 1 where the finest sampling is off by more than its bound.
+With --convergence: the errors of bars over seeds instead, and their order in the spacing of nodes.
 """
+import math
 import os
 import sys
 import tempfile
@@ -32,6 +34,7 @@ fixed = [[-1, -1, -1, 0, 2, 2]]
 CRACK
 ''' + MATERIAL + '''
 [time]
+seed = SEED
 frames = 4
 frame_rate = 0.01
 step = 100
@@ -69,21 +72,31 @@ step 2
 '''
 
 
-def cantilever(folder, gravity, crack, levels=1):
-    kerf.write_block(os.path.join(folder, 'bar.off'), (-0.5, 0, 0), (4, 1, 1), 0.125)
-    with open(os.path.join(folder, 'crack.front'), 'w') as f:
-        f.write(FRONT)
-    at_tip = lambda p: abs(p[0] - 4) < 1e-6
+def cantilever_in_ccx(folder, gravity, crack):
+    """The mean deflection of the tip in CalculiX, m."""
     if crack:
         bricks = ccx.Bricks(ccx.towards(1, 0, 4, 0.03), ccx.even(0, 1, 6), ccx.towards(0.5, 0, 1, 0.03), (1, 0.5))
     else:
         bricks = ccx.Bricks(ccx.even(0, 4, 24), ccx.even(0, 1, 6), ccx.even(0, 1, 6))
     rows, _ = ccx.solve(os.path.join(folder, 'bar'), bricks, bricks.where(lambda p: p[0] < 1e-9),
                         bricks.where(lambda p: p[0] > 4 - 1e-9), gravity=gravity)
-    scene = CANTILEVER.replace('GRAVITY', str(gravity)).replace('LEVELS', str(levels))
+    return sum(r[2] for r in rows) / len(rows)
+
+
+def cantilever_in_kerf(gravity, crack, levels, nodes, seed=1):
+    """The same in Kerf."""
+    scene = CANTILEVER.replace('GRAVITY', str(gravity)).replace('LEVELS', str(levels)).replace('SEED', str(seed))
     scene = scene.replace('CRACK', '\n[[score]]\nfile = "crack.front"\n' if crack else '')
-    measured = [kerf.mean_displacement(kerf.simulate(folder, scene, n), at_tip, 2) for n in NODES]
-    return [('tip, m', sum(r[2] for r in rows) / len(rows), measured)]
+    with tempfile.TemporaryDirectory() as folder:
+        kerf.write_block(os.path.join(folder, 'bar.off'), (-0.5, 0, 0), (4, 1, 1), 0.125)
+        with open(os.path.join(folder, 'crack.front'), 'w') as f:
+            f.write(FRONT)
+        return kerf.mean_displacement(kerf.simulate(folder, scene, nodes), lambda p: abs(p[0] - 4) < 1e-6, 2)
+
+
+def cantilever(folder, gravity, crack, levels=1):
+    measured = [cantilever_in_kerf(gravity, crack, levels, n) for n in NODES]
+    return [('tip, m', cantilever_in_ccx(folder, gravity, crack), measured)]
 
 
 def plates(folder, push):
@@ -103,7 +116,30 @@ def plates(folder, push):
     return [('force, N', force, forces), ('middle of a side, m', rows[0][0], sides)]
 
 
+def convergence():
+    """Root mean squares of errors over five seeds, and the slope of their logarithms by least squares."""
+    samplings = (300, 600, 1200, 2400, 4800, 9600)
+    print('| case | %s | order |' % ' | '.join('%d nodes' % n for n in samplings))
+    print('|---|' + '---|' * (len(samplings) + 1))
+    for name, gravity, crack in (('Cantilever', 0.3, False), ('Cracked', 0.15, True)):
+        with tempfile.TemporaryDirectory() as folder:
+            expected = cantilever_in_ccx(folder, gravity, crack)
+            for levels in (1, 2):
+                errors = []
+                for nodes in samplings:
+                    tips = [cantilever_in_kerf(gravity, crack, levels, nodes, seed) for seed in range(1, 6)]
+                    errors.append(math.sqrt(sum((t / expected - 1) ** 2 for t in tips) / len(tips)))
+                x, y = [-math.log(n) / 3 for n in samplings], [math.log(e) for e in errors]
+                mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+                order = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y)) / sum((a - mean_x) ** 2 for a in x)
+                cells = ' | '.join('%.1f %%' % (100 * e) for e in errors)
+                print('| %s, levels = %d | %s | %.1f |' % (name, levels, cells, order), flush=True)
+
+
 def main():
+    if sys.argv[1:] == ['--convergence']:
+        convergence()
+        return 0
     failed = False
     print('| case | CalculiX | %s |' % ' | '.join('%d nodes' % n for n in NODES))
     print('|---|---|' + '---|' * len(NODES))

@@ -120,7 +120,7 @@ Stroke scalpel_of(Table& t) {
   Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), t.point("point"),
            -t.direction("normal"),       t.number("depth", 1e-9, farthest)};
   const double above = 0.25 * s.depth;
-  s.origin -= above * s.direction, s.depth += above;
+  s.origin -= above * s.direction, s.depth += above, s.above = above;
   return s;
 }
 

@@ -36,6 +36,9 @@ struct Stroke {
   Phase phase = Phase::begin;
   geo::Vec3 origin = geo::Vec3::Zero(), direction = geo::Vec3::UnitZ();
   double depth = 0;
+  /// Distance from the origin to the point of the surface that the edge follows; none: it follows
+  /// the ray.
+  std::optional<double> above = {};
 };
 /// A point of the surface: barycentric coordinates in the face of a slot.
 struct Spot {

@@ -79,7 +79,7 @@ void Session::obey(ClientId page, const Stroke& stroke) {
     require_free_hand();
     if (stroke.depth > 100 * geo::bounding_box(setup_.models.all).diagonal()) throw BadMessage("the edge is too long");
     HeldBlade& held = blades_[hand];
-    held.now = held.target = {stroke.origin, stroke.direction}, held.length = stroke.depth;
+    held.now = held.target = {stroke.origin, stroke.direction}, held.length = stroke.depth, held.above = stroke.above;
     return;
   }
   const auto held = blades_.find(hand);
@@ -234,10 +234,14 @@ void Session::reset() {
 void Session::chase(HeldBlade& held, bool whole) const {
   Edge& now = held.now;
   const Edge& to = held.target;
+  const double most = most_motion * finest_spacing(run_.body());
+  if (held.above) {
+    follow(held, whole ? std::numeric_limits<double>::infinity() : most);
+    return;
+  }
   const double way =
       std::max((to.origin - now.origin).norm(),
                (to.origin + held.length * to.direction - now.origin - held.length * now.direction).norm());
-  const double most = most_motion * finest_spacing(run_.body());
   if (whole || way <= most) {
     now = to;
     return;
@@ -245,6 +249,24 @@ void Session::chase(HeldBlade& held, bool whole) const {
   now.origin += most / way * (to.origin - now.origin);
   const geo::Vec3 direction = now.direction + most / way * (to.direction - now.direction);
   if (direction.norm() > 0.1) now.direction = direction.normalized();
+}
+
+// Moves an edge on the surface towards the pointer, no point of it farther than `most`. Normals of
+// triangles jump. An edge that turned with them would sweep a sheet that crosses itself and cuts
+// off crumbs. So the turn moves a point by at most `most_turn` of the way across the edge, and
+// every point goes forward. The edge has arrived when it is at the point, however it is turned.
+void Session::follow(HeldBlade& held, double most) {
+  constexpr double most_turn = 0.5;
+  Edge& now = held.now;
+  const double above = *held.above, reach = std::max(above, held.length - above);
+  const geo::Vec3 from = now.origin + above * now.direction;
+  const geo::Vec3 all = held.target.origin + above * held.target.direction - from;
+  const double share = std::min(1.0, most / std::max((1 + most_turn) * all.norm(), 1e-300));
+  const geo::Vec3 way = share * all, turn = share * (held.target.direction - now.direction);
+  const double wanted = reach * turn.norm(), bound = most_turn * across(way, now.direction).norm();
+  now.direction = (now.direction + (wanted > bound ? bound / wanted : 1) * turn).normalized();
+  now.origin = from + way - above * now.direction;
+  if (share == 1) held.target = now;
 }
 
 // Turns the back of a blade against its motion, little by little: material is beside it.

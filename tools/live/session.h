@@ -75,6 +75,7 @@ class Session {
   struct HeldBlade {
     Edge now, target;  // where the edge is, and where the pointer is
     double length = 0;
+    std::optional<double> above;         // of an edge that follows the surface: from its origin to there
     geo::Vec3 back = geo::Vec3::Zero();  // unit, from the edge against its motion; zero before it has moved
     std::optional<std::size_t> blade;    // added to the run when it moves first
     std::uint32_t faces = 0;             // of the complex, when the blade was added
@@ -106,6 +107,7 @@ class Session {
   void require_free_hand() const;
   void extend_hands(bool whole);
   void chase(HeldBlade& held, bool whole) const;
+  static void follow(HeldBlade& held, double most);
   void turn(HeldBlade& held, const Edge& before) const;
   void add_blade(HeldBlade& held, const Edge& from);
   bool end_hands();

@@ -99,7 +99,8 @@ std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, d
     // The path bends within half the edge's length and the margin of its middle.
     const double least = f.distance + (f.middle - node).norm() - f.length - 2 * bend_margin * support;
     if (f.distance >= support + f.length || least >= longest) continue;
-    const Vec3 ahead = support / 1024 * f.edge->ahead, bend = bend_point(x, node, f.edge->a + ahead, f.edge->b + ahead);
+    const Vec3 ahead = 0.5 * bend_margin * support * f.edge->ahead,
+               bend = bend_point(x, node, f.edge->a + ahead, f.edge->b + ahead);
     if (const double length = (bend - x).norm() + (node - bend).norm(); length < longest)
       paths.push_back({length, bend});
   }

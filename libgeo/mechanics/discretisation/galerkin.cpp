@@ -92,9 +92,9 @@ void set_position(const Body& body, const Vec3& intended, MaterialPoint& point) 
 // by `half`.
 std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::span<const QuadratureCell> before) {
   std::vector<std::uint32_t> same;
+  const auto place = [](const QuadratureCell& q) { return std::pair(morton(q.cell.corner), q.half); };
   std::size_t o = 0;
   for (const QuadratureCell& c : now) {
-    const auto place = [](const QuadratureCell& q) { return std::pair(morton(q.cell.corner), q.half); };
     while (o < before.size() && place(before[o]) < place(c)) ++o;
     const bool found = o < before.size() && place(before[o]) == place(c) && before[o].cell.level == c.cell.level;
     same.push_back(found ? static_cast<std::uint32_t>(o) : ~0u);

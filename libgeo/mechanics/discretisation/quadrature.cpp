@@ -49,6 +49,12 @@ void each_neighbor(const Cell& cell, int root, const Visit& visit) {
   }
 }
 
+// Whether one of the cells of a level contains the cell of a Morton code.
+bool covers(const Divisions& cells, int level, std::uint64_t code) {
+  const auto& codes = cells[static_cast<std::size_t>(level)];
+  return std::binary_search(codes.begin(), codes.end(), code >> 3 * level << 3 * level);
+}
+
 // A cell with its points; its volume is zero if no sample is inside.
 QuadratureCell make_cell(const RegionTree& tree, const Lattice& lattice, const Region& region) {
   const double edge = lattice.edge(region.cell.level);
@@ -223,13 +229,9 @@ Divisions QuadratureCells::changed_cells(const Divisions& before) const {
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     std::erase_if(all, [&](auto code) {
-      if (level < root_ && !std::binary_search(divided_[l + 1].begin(), divided_[l + 1].end(),
-                                               code >> 3 * (level + 1) << 3 * (level + 1)))
-        return true;
-      for (int above = level + 1; above <= root_; ++above) {
-        const auto& coarser = changed[static_cast<std::size_t>(above)];
-        if (std::binary_search(coarser.begin(), coarser.end(), code >> 3 * above << 3 * above)) return true;
-      }
+      if (level < root_ && !covers(divided_, level + 1, code)) return true;
+      for (int above = level + 1; above <= root_; ++above)
+        if (covers(changed, above, code)) return true;
       return false;
     });
     changed[l] = std::move(all);

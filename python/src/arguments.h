@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string>
 
+#include "kerf/error.h"
+
 namespace kerf_python {
 
 namespace py = pybind11;
@@ -16,6 +18,16 @@ struct Path {
   /// The path as the library takes it.
   operator const std::string&() const { return text; }
 };
+
+/// Whether an object is a str or an os.PathLike.
+inline bool is_path(py::handle object) { return py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__"); }
+/// The text of a path. Throws geo::InputError where it holds a zero byte, which would end messages.
+/// Precondition: is_path().
+inline std::string path_from(py::handle object, const std::string& name) {
+  auto text = py::str(py::module_::import("os").attr("fspath")(object)).cast<std::string>();
+  if (text.find('\0') != text.npos) throw geo::InputError(name + ": its path holds a zero byte; give another one");
+  return text;
+}
 
 /// An integer, of NumPy's types too. Throws py::type_error, and where it does not fit 64 bits.
 inline std::int64_t integer_from(py::handle object, const std::string& name) {

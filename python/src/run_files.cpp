@@ -41,9 +41,9 @@ std::vector<std::shared_ptr<const Mesh>> frames_from(py::handle object, const ch
   std::vector<std::shared_ptr<const Mesh>> out;
   if (object.is_none()) return out;
   for (const auto item : object) {
-    const bool path = py::isinstance<py::str>(item) || py::hasattr(item, "__fspath__");
+    const bool path = is_path(item);
     out.push_back(path ? nullptr : mesh_argument(item, name));
-    paths.push_back(path ? py::str(py::module_::import("os").attr("fspath")(item)).cast<std::string>() : "");
+    paths.push_back(path ? path_from(item, name) : "");
   }
   return out;
 }

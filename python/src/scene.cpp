@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "arguments.h"
 #include "bind.h"
 #include "kerf/error.h"
 #include "pose.h"
@@ -75,7 +76,7 @@ std::string absolute_path(const std::string& key, const std::string& text) {
 }
 
 std::string override_of(const std::string& key, py::handle value, bool literal) {
-  if (!py::isinstance<py::str>(value) && !py::hasattr(value, "__fspath__")) return toml_of(value, key);
+  if (!is_path(value)) return toml_of(value, key);
   const auto text = py::str(py::module_::import("os").attr("fspath")(value)).cast<std::string>();
   const auto path = absolute_path(key, text);
   return path == text && !literal ? toml_of(py::str(text), key) : path;
@@ -130,15 +131,14 @@ std::shared_ptr<const Scene> scene_argument(py::handle object, geo::SceneOverrid
     all.insert(all.end(), overrides.begin(), overrides.end());
     return parsed(scene->text, scene->name, scene->folder, std::move(all));
   }
-  if (!py::isinstance<py::str>(object) && !py::hasattr(object, "__fspath__"))
-    throw py::type_error("scene: give a kerf.Scene, the path of a file, or its text");
-  auto given = py::str(py::module_::import("os").attr("fspath")(object)).cast<std::string>();
-  if (py::isinstance<py::str>(object) && given.find('\n') != given.npos)
-    return parsed(std::move(given), "scene", "", std::move(overrides));
-  if (given.find('\0') != given.npos) throw geo::InputError("scene: its path holds a zero byte; give another one");
-  auto text = geo::read_all(given);
-  const auto folder = std::filesystem::path(given).parent_path().string();
-  return parsed(std::move(text), std::move(given), folder, std::move(overrides));
+  if (!is_path(object)) throw py::type_error("scene: give a kerf.Scene, the path of a file, or its text");
+  if (py::isinstance<py::str>(object))
+    if (auto text = object.cast<std::string>(); text.find('\n') != text.npos)
+      return parsed(std::move(text), "scene", "", std::move(overrides));
+  auto path = path_from(object, "scene");
+  auto text = geo::read_all(path);
+  const auto folder = std::filesystem::path(path).parent_path().string();
+  return parsed(std::move(text), std::move(path), folder, std::move(overrides));
 }
 
 py::array keys_to(const geo::Motion& motion) {

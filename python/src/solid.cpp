@@ -43,6 +43,12 @@ void require_next(const DeformingSolid& self, const Body& body, const BodyDelta&
     throw geo::InputError("delta: is not the body's last change, or the solid has not followed the ones before");
 }
 
+// The body as the solid knows it.
+void require_followed(const DeformingSolid& self, const Body& body) {
+  if (self.body != body.id || self.version != body.version)
+    throw geo::InputError("body: is another one, or the solid has not followed its changes");
+}
+
 void update(DeformingSolid& self, Body& body, const BodyDelta& delta, State& state, bool points) {
   const Writing writing(self.busy), moving(state.busy);
   const Reading reading(body.busy);
@@ -64,8 +70,7 @@ void update(DeformingSolid& self, Body& body, const BodyDelta& delta, State& sta
 void update_points(DeformingSolid& self, Body& body, State& state) {
   const Writing writing(self.busy), moving(state.busy);
   const Reading reading(body.busy);
-  if (self.body != body.id || self.version != body.version)
-    throw geo::InputError("body: is another one, or the solid has not followed its changes");
+  require_followed(self, body);
   if (state.state.displacement.size() != self.solid.size()) throw geo::InputError("state: has another number of nodes");
   without_gil([&] { self.solid.update_points(body.body, state.state); });
   self.points_due = false;
@@ -75,9 +80,8 @@ void update_points(DeformingSolid& self, Body& body, State& state) {
 void hold(DeformingSolid& self, Body& body, py::object boxes) {
   const Writing writing(self.busy);
   const Reading reading(body.busy);
-  if (self.body != body.id || self.version != body.version)
-    throw geo::InputError("body: is another one, or the solid has not followed its changes");
-  if (self.points_due) throw geo::InputError("the solid was updated by update_nodes(); call update_points() first");
+  require_followed(self, body);
+  require_points(self);
   const auto [shape, values] = values_from(boxes, "boxes", 2, 2);
   if (shape[1] != 6) throw geo::InputError("boxes: give rows of x0, y0, z0, x1, y1, z1");
   std::vector<geo::HeldBox> held(shape[0]);
@@ -171,8 +175,12 @@ void add_construction(Solids& solid) {
 
 }  // namespace
 
-void require_fit(const DeformingSolid& solid, const State& state) {
+void require_points(const DeformingSolid& solid) {
   if (solid.points_due) throw geo::InputError("the solid was updated by update_nodes(); call update_points() first");
+}
+
+void require_fit(const DeformingSolid& solid, const State& state) {
+  require_points(solid);
   require_size(solid, state);
 }
 

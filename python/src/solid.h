@@ -45,6 +45,8 @@ void add_fields(py::class_<DeformingSolid, std::shared_ptr<DeformingSolid>>& sol
 /// Adds what advances a state.
 void add_steps(py::class_<DeformingSolid, std::shared_ptr<DeformingSolid>>& solid);
 
+/// Throws geo::InputError unless the solid's points are up to date.
+void require_points(const DeformingSolid& solid);
 /// Throws geo::InputError unless the state has a row for each node of the solid, and the solid's
 /// points are up to date.
 void require_fit(const DeformingSolid& solid, const State& state);

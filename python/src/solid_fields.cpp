@@ -14,7 +14,7 @@ using Vectors = std::vector<geo::Vec3>;
 
 // The displacements of an argument: an array, or those of a State.
 Vectors displacements(const DeformingSolid& self, py::handle object) {
-  if (self.points_due) throw geo::InputError("the solid was updated by update_nodes(); call update_points() first");
+  require_points(self);
   if (!py::isinstance<State>(object)) return vectors_from(object, "u", self.solid.size());
   auto& state = object.cast<State&>();
   const Reading reading(state.busy);

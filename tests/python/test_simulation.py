@@ -78,6 +78,8 @@ class Scenes(unittest.TestCase):
             kerf.Scene("not\ntoml")
         with self.assertRaisesRegex(kerf.InputError, "zero byte"):
             kerf.Scene("\0")
+        with self.assertRaisesRegex(kerf.InputError, "zero byte"):
+            kerf.write_usd("none.usda", ["\0"], 24)
 
 
 class Runs(unittest.TestCase):

@@ -1,23 +1,23 @@
 // Strokes of the scalpel on a surface whose normals jump, as those of triangles do.
 #include <catch2/catch.hpp>
 
-#include <cmath>
-#include <random>
 #include <vector>
 
 #include <kerf/contact.h>
 #include <kerf/mesh.h>
+#include "base/random.h"
 #include "cases.h"
 #include "live/session.h"
+#include "setup.h"
 
 using namespace live;
+using geo::Random;
 using geo::Vec3;
 
 namespace {
 
 sim::Setup setup() {
-  sim::Setup s;
-  s.scene = geo::parse_scene(R"(
+  return setup_of(R"(
 [body]
 mesh = "block.ply"
 spacing = 0.3
@@ -25,25 +25,9 @@ fixed = [[-1, -1, -1, 2, 2, 0.1]]
 [material]
 young = 1e5
 damping = 20.0
-[contact]
-self = true
-[time]
-accuracy = 0.01
 )",
-                             "s.toml");
-  s.models = geo::place_models(s.scene, {geo::make_block({1, 1, 1}, 0.25)});
-  adapt_scene(s.scene, 60, true);
-  return s;
+                  geo::make_block({1, 1, 1}, 0.25));
 }
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double lo, double hi) { return lo + (hi - lo) * double(engine_() % 1000000) / 1000000; }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 // The pose that a page sends for a point of the block's top, under a normal that is off by `jump`.
 Stroke pose(Phase phase, const Vec3& point, double depth, double jump, Random& random) {

@@ -16,6 +16,7 @@
 #include "live/scene_text.h"
 #include "live/session.h"
 #include "page_model.h"
+#include "setup.h"
 
 using namespace live;
 
@@ -27,8 +28,7 @@ const geo::TriangleMesh& block() {
 }
 
 sim::Setup setup() {
-  sim::Setup s;
-  s.scene = geo::parse_scene(R"(
+  return setup_of(R"(
 gravity = [0, 0, -3]
 [body]
 mesh = "cube.ply"
@@ -38,15 +38,8 @@ young = 3e4
 damping = 2.0
 [ground]
 point = [0, 0, -0.01]
-[contact]
-self = true
-[time]
-accuracy = 0.01
 )",
-                             "s.toml");
-  s.models = geo::place_models(s.scene, {block()});
-  adapt_scene(s.scene, 60, true);
-  return s;
+                  block());
 }
 
 // The pose of an edge through the cube along y, at x.

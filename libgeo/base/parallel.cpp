@@ -1,4 +1,5 @@
-// The parallel primitives of kerf/parallel.h, on top of oneTBB.
+// The parallel primitives of kerf/parallel.h, on top of oneTBB; under the thread sanitizer, on top
+// of threads of the standard library (base/parallel_threads.h).
 #include "kerf/parallel.h"
 
 #include <tbb/blocked_range.h>
@@ -8,6 +9,8 @@
 #include <tbb/parallel_invoke.h>
 
 #include <memory>
+
+#include "base/parallel_threads.h"
 
 namespace geo {
 namespace {
@@ -32,12 +35,21 @@ int threads() { return requested_threads > 0 ? requested_threads : tbb::info::de
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   if (threads() == 1 || serial_scopes > 0 || count <= grain) return body(0, count);
+#ifdef KERF_SANITIZE_THREADS
+  parallel_for_by_threads(threads(), count, grain, body);
+#else
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+#endif
 }
 
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
+#ifdef KERF_SANITIZE_THREADS
+  if (threads() > 1 && serial_scopes == 0)
+    return parallel_for_by_threads(threads(), 2, 1, [&](std::size_t i, std::size_t) { i == 0 ? first() : second(); });
+#else
   if (threads() > 1 && serial_scopes == 0) return tbb::parallel_invoke(first, second);
+#endif
   first();
   second();
 }

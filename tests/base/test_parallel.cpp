@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/parallel_threads.h"
 #include "kerf/parallel.h"
 
 using namespace geo;
@@ -64,6 +65,23 @@ TEST_CASE("in a serial scope, loops and pairs run in the calling thread", "[para
   }
   CHECK(elsewhere == 0);
   CHECK(calls == 3);  // the loop is one range
+}
+
+TEST_CASE("a loop by threads of the standard library visits each index once", "[parallel]") {
+  for (const int count : {1, 2, 5})
+    for (const std::size_t grain : {0, 1, 7, 1000}) {
+      std::vector<std::atomic<int>> visits(300);
+      parallel_for_by_threads(count, 300, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)  // a nested loop finds no thread left, and runs all the same
+          parallel_for_by_threads(count, 3, 1, [&](std::size_t, std::size_t) { ++visits[i]; });
+      });
+      for (const auto& visit : visits) CHECK(visit == 3);
+    }
+  CHECK_THROWS_AS(parallel_for_by_threads(4, 100, 1,
+                                          [](std::size_t i, std::size_t) {
+                                            if (i == 50) throw std::runtime_error("no");
+                                          }),
+                  std::runtime_error);
 }
 
 TEST_CASE("both functions of a pair are called, and exceptions reach the caller", "[parallel]") {

@@ -1,3 +1,4 @@
+// Loops by threads of base/parallel_threads.h: each thread takes the next range until none is left.
 #include "base/parallel_threads.h"
 
 #include <algorithm>

@@ -11,6 +11,7 @@
 #include "kerf/parallel.h"
 #include "kerf/pieces.h"
 #include "mechanics/solver/solid_discretisation.h"
+#include "simulation/front_anchor.h"
 
 namespace geo {
 namespace {
@@ -104,7 +105,7 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
 }
 
 double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, const EdgeFront& from,
-                       std::span<const Vec3> to) {
+                       std::span<const Vec3> to, const FrontAnchor& anchor) {
   const auto& points = from.front.points;
   std::vector<double> distances(points.size(), 0);
   parallel_for(points.size() - 1, 8, [&](std::size_t begin, std::size_t end) {
@@ -116,12 +117,14 @@ double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, 
       const Vec3 before = 0.5 * (points[k].position + points[k + 1].position);
       const auto place = half.map().to_material(half.pose() * place_on(blade, at), memory, &before);
       if (!place.in_support) continue;
+      const double spacing = body.nodes.spacing[place.nearest.index()];
+      const Vec3 swept = anchor.corrected(at, place.position, spacing);
       // A point that was inserted has no segment of its own: beside it the edge passes over the
       // next strip.
       double distance = std::numeric_limits<double>::infinity();
       for (std::size_t j = 0; j + 1 < points.size(); ++j)
-        distance = std::min(distance, distance_from_strip(place.position, points, to, j));
-      distances[k] = distance / body.nodes.spacing[place.nearest.index()];
+        distance = std::min(distance, distance_from_strip(swept, points, to, j));
+      distances[k] = distance / spacing;
     }
   });
   return *std::max_element(distances.begin(), distances.end());

@@ -12,6 +12,8 @@
 
 namespace geo {
 
+class FrontAnchor;
+
 /// The motion of nodes in a time step that they have made: straight, at a constant speed.
 class NodeWay {
  public:
@@ -65,9 +67,10 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
 
 /// The largest distance of the surface that the edge has swept, mapped into the material, from the
 /// strips between a front and its next position, in node spacings. It is measured half way between
-/// the points of the front, at half the time of the cut. `half`: the map at that time.
+/// the points of the front, at half the time of the cut. `half`: the map at that time; `anchor`:
+/// corrects it as it has corrected `to`.
 double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, const EdgeFront& from,
-                       std::span<const Vec3> to);
+                       std::span<const Vec3> to, const FrontAnchor& anchor);
 
 /// The largest angle between two of the faces, and between them and their neighbours in the same
 /// crack, in degrees. Triangles lower than `lowest`, model units, do not count.

@@ -20,6 +20,7 @@
 #include "simulation/edge_retreat.h"
 #include "simulation/edge_runs.h"
 #include "simulation/fracture_step.h"
+#include "simulation/front_anchor.h"
 #include "simulation/grips.h"
 #include "simulation/obstacles.h"
 #include "simulation/pulls.h"
@@ -87,7 +88,7 @@ struct Simulation::Impl {
   std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction);
   void cut_to(const MovedBody& moved, std::size_t blade, int k, int cuts, FrameStats& stats);
   Advance advance_of(const EdgeFront& front, std::span<const EdgePoint> run, const MapAt& half, const Blade& blade,
-                     FrameStats& stats) const;
+                     const FrontAnchor& anchor, FrameStats& stats) const;
   std::optional<std::vector<FaceId>> split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
   void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
   std::int32_t unused_crack() const;
@@ -261,13 +262,17 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
   Stopwatch watch;
   const Blade& blade = scene.blades[b];
   std::vector<EdgeFront>& fronts = state.fronts[b];
-  const auto runs = map_edge(moved, b, double(k) / cuts);
-  std::optional<MapAt> half;
-  if (!runs.empty()) half.emplace(moved, blade, (k - 0.5) / cuts);
+  auto runs = map_edge(moved, b, double(k) / cuts);
+  std::optional<MapAt> start, half;
+  if (!runs.empty()) start.emplace(moved, blade, (k - 1.0) / cuts), half.emplace(moved, blade, (k - 0.5) / cuts);
   stats.front_seconds += watch.lap();
   // The map belongs to the body before the first split: all runs ask it before any of them cuts.
   std::vector<Advance> advances;
-  for (std::size_t r = 0; r < runs.size(); ++r) advances.push_back(advance_of(fronts[r], runs[r], *half, blade, stats));
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const FrontAnchor anchor(body.surface, *start, blade, fronts[r]);
+    for (EdgePoint& p : runs[r]) p.material = anchor.corrected(p.at, p.material, p.spacing);
+    advances.push_back(advance_of(fronts[r], runs[r], *half, blade, anchor, stats));
+  }
   stats.front_seconds += watch.lap();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     auto& [edge, to, spacing, deviation] = advances[r];
@@ -284,14 +289,15 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
   }
 }
 
-// The next position of a front. `half`: the map at half the time of the cut.
+// The next position of a front. `half`: the map at half the time of the cut; `anchor`: of the front.
 Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, std::span<const EdgePoint> run,
-                                                       const MapAt& half, const Blade& blade, FrameStats& stats) const {
+                                                       const MapAt& half, const Blade& blade, const FrontAnchor& anchor,
+                                                       FrameStats& stats) const {
   Advance a;
   a.edge = refined(front, run, a.to);
   for (const double at : a.edge.at) a.spacing.push_back(nearest(run, at).spacing);
   stats.sheet.retreating += hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
-  a.deviation = sheet_deviation(body, half, blade, a.edge, a.to);
+  a.deviation = sheet_deviation(body, half, blade, a.edge, a.to, anchor);
   return a;
 }
 

@@ -1,0 +1,59 @@
+// Only the change along the normal of the sheet turns it; a change within the sheet makes the edge
+// faster or slower. Points without a sheet behind them are not corrected.
+#include "simulation/front_anchor.h"
+
+#include <algorithm>
+
+namespace geo {
+namespace {
+
+constexpr double reach = 2;  // spacings, of a correction; measured in docs/decisions/086
+
+// Per front point: the sum of the normals of the sheet's faces beside it, each as long as twice its
+// area; zero where it has none.
+std::vector<Vec3> sheet_normals(const Complex& surface, const FrontState& front) {
+  std::vector<Vec3> normals(front.points.size(), Vec3::Zero());
+  for (std::size_t s = 0; s < front.segments.size(); ++s) {
+    const auto& segment = front.segments[s];
+    for (std::size_t k = 0; k + 1 < segment.size(); ++k) {
+      const VertexId a = segment[k].id, b = segment[k + 1].id;
+      if (!a.valid() || !b.valid() || a == b) continue;
+      for (const FaceId f : surface.faces_around(a, b)) {
+        if (surface.face(f).crack != front.crack) continue;
+        const auto t = surface.corners(f);
+        const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+        for (const std::size_t i : {s, (s + 1) % normals.size()}) normals[i] += n.dot(normals[i]) < 0 ? Vec3(-n) : n;
+      }
+    }
+  }
+  return normals;
+}
+
+}  // namespace
+
+FrontAnchor::FrontAnchor(const Complex& surface, const MapAt& start, const Blade& blade, const EdgeFront& edge)
+    : at_(edge.at), change_(edge.at.size(), Vec3::Zero()) {
+  const std::vector<Vec3> normals = sheet_normals(surface, edge.front);
+  InverseDeformation::VertexCache memory;
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    const FrontState::Point& point = edge.front.points[i];
+    place_.push_back(point.position);
+    if (!point.id.valid() || normals[i].isZero(0)) continue;
+    const auto mapped = start.map().to_material(start.pose() * place_on(blade, at_[i]), memory, &point.position);
+    if (!mapped.in_support) continue;
+    const Vec3 normal = normals[i].normalized();
+    change_[i] = normal.dot(mapped.position - point.position) * normal;
+  }
+}
+
+Vec3 FrontAnchor::corrected(double at, const Vec3& place, double spacing) const {
+  if (at_.empty()) return place;
+  const auto k = static_cast<std::size_t>(std::lower_bound(at_.begin(), at_.end(), at) - at_.begin());
+  const std::size_t after = std::min(k, at_.size() - 1), before = k > 0 && k < at_.size() ? k - 1 : after;
+  const double t = before < after ? (at - at_[before]) / (at_[after] - at_[before]) : 1;
+  const Vec3 from = place_[before] + t * (place_[after] - place_[before]);
+  const double share = std::max(0.0, 1 - (place - from).norm() / (reach * spacing));
+  return place - share * (change_[before] + t * (change_[after] - change_[before]));
+}
+
+}  // namespace geo

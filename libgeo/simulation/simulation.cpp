@@ -289,7 +289,8 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
   }
 }
 
-// The next position of a front. `half`: the map at half the time of the cut; `anchor`: of the front.
+// The next position of a front. `half`: the map at half the time of the cut; `anchor`: of the
+// front.
 Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, std::span<const EdgePoint> run,
                                                        const MapAt& half, const Blade& blade, const FrontAnchor& anchor,
                                                        FrameStats& stats) const {

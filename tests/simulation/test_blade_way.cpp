@@ -117,8 +117,8 @@ TEST_CASE("a sheet in falling material is as smooth with more nodes, and there a
     }
     CHECK(find_pieces(sim.body().surface).count == 2);
     CHECK(work.refused == 0);
-    CHECK(work.sheet.deviation < 0.1);
-    CHECK(work.sheet.turning < 30);
+    CHECK(work.sheet.deviation < 0.05);  // 0.07 where the edge does not go on from its front
+    CHECK(work.sheet.turning < 10);
     CHECK(work.sheet.retreating == 0);
     CHECK(work.sheet.crumbs == 0);
   }

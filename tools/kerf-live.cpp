@@ -79,7 +79,8 @@ int main(int argc, char** argv) {
   t.argument("SCENE|MODEL", command.scene, "Scene file (TOML), or a model: OBJ, PLY, STL or OFF");
   t.option("--port", command.port, "Port to listen at; 0: a free one");
   t.option("--address", command.address, "Address of the interface to listen at; 0.0.0.0: all, for other devices");
-  t.option("--rate", command.rate, "Frames per second of the simulation");
+  t.option("--rate", command.rate,
+           "Frames per second of the simulation; slow ones get less accuracy and longer time steps, within bounds");
   t.option("--linger", command.linger, "Seconds to wait for a page after the last one was closed; 0: for ever");
   t.option("--record", command.record, "Write what hands did as a scene to this file, at the end");
   t.option("--set", command.settings,

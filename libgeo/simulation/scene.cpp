@@ -2,6 +2,9 @@
 // applied after the pose at rest.
 #include "kerf/scene.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace geo {
 
 std::vector<Vec3> Blade::at(double time) const {
@@ -15,5 +18,8 @@ Pose SceneObstacle::pose(double time) const {
   const Pose moved = motion.at(time);
   return {moved * place.position, moved.rotation * place.rotation};
 }
+
+// 1e-9 keeps rounding from adding a step where dt divides the frame.
+int Scene::steps_per_frame() const { return std::max(1, static_cast<int>(std::ceil(1 / frame_rate / dt - 1e-9))); }
 
 }  // namespace geo

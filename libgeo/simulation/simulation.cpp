@@ -483,13 +483,12 @@ void Simulation::change(SceneChange change) {
   impl_->scene.changes.push_back(change);
 }
 
-// ⌈frame / dt⌉ equal steps; 1e-9 keeps rounding from adding one where dt divides the frame.
 FrameStats Simulation::advance_frame(const Progress& progress) {
   Impl& run = *impl_;
   FrameStats stats;
   run.apply_changes(run.time_of(run.state.frame));
   const double frame_time = 1 / run.scene.frame_rate;
-  const int steps = std::max(1, static_cast<int>(std::ceil(frame_time / run.scene.dt - 1e-9)));
+  const int steps = run.scene.steps_per_frame();
   const auto time = [&](int s) { return (run.state.frame + double(s) / steps) * frame_time; };
   for (int s = 0; s < steps; ++s) {
     report(progress, "", static_cast<std::size_t>(s), static_cast<std::size_t>(steps));

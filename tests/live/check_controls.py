@@ -1,6 +1,7 @@
 """check_controls.py TOOLS_DIR SCENES_DIR MODELS_DIR CASE...: tools and controls of kerf-live's page, used by real pointer events.
 
 scalpel: an edge that follows the pointer on the surface cuts in; pause, step, undo and reset by their buttons.
+wound: the scalpel's edge stands on the skin as it is drawn, and passes over an open cut without going into it.
 pin: it holds its place while the body is shaken. sliders: the material has the values that they show.
 reconnect: a page that lost its connection, and one that is loaded again, show the whole state.
 Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
@@ -59,6 +60,67 @@ def scalpel():
     hand.drag(along([x - 40, y], [x + 40, y], steps=10), each=hand.step)
     hand.finish()
     check(f"scalpel: a second cut leaves {shown()}", shown()[1] > 0)
+    session.done()
+
+
+# Angles between the normals under neighbouring places of a row, where the skin faces the eye: as drawn, and of triangles.
+ROW = """(() => {
+  let drawn = 0, flat = 0, hits = 0, last = null;
+  for (let x = 0; x < 640; x += 0.25) {
+    const { origin, ray } = rayAt(x, %f), hit = surface.hit(origin, ray);
+    if (hit && hit.flat.dot(ray) < -0.6) {
+      hits++;
+      if (last) drawn = Math.max(drawn, hit.normal.angleTo(last.normal)), flat = Math.max(flat, hit.flat.angleTo(last.flat));
+      last = hit;
+    } else last = null;
+  }
+  return { hits, drawn, flat }; })()"""
+
+# Shows a groove in place of the body: two plates of skin that face the eye, and two walls that meet 0.5 below their plane, 0.4 apart at the top.
+# Messages of the scalpel are kept in `sent`, as places across the groove and heights above the plates' plane.
+GROOVE = """(() => {
+  const across = new THREE.Vector3(), up = new THREE.Vector3(), eye = new THREE.Vector3();
+  camera.matrixWorld.extractBasis(across, up, eye);
+  window.grooveAt = (u, v, w) => across.clone().multiplyScalar(u).addScaledVector(up, v).addScaledVector(eye, w);
+  const rows = [[-0.8, 0], [-0.2, 0], [-0.2, 0], [0, -0.5], [0, -0.5], [0.2, 0], [0.2, 0], [0.8, 0]];
+  const points = rows.flatMap(([u, w]) => [grooveAt(u, -0.6, w), grooveAt(u, 0.6, w)]).flatMap((p) => toWorld(p));
+  const corners = [], patch = [];
+  for (let part = 0; part < 4; part++) {
+    const a = 4 * part;
+    corners.push(a, a + 2, a + 1, a + 1, a + 2, a + 3), patch.push(...(part === 1 || part === 2 ? [1, 1] : [0, 0]));
+  }
+  const lo = [0, 1, 2].map((k) => Math.min(...points.filter((x, i) => i % 3 === k)));
+  const step = [0, 1, 2].map((k) => Math.max(1e-9, Math.max(...points.filter((x, i) => i % 3 === k)) - lo[k]) / 65535);
+  const vertices = points.length / 3, position = Uint16Array.from(points, (x, i) => Math.round((x - lo[i % 3]) / step[i % 3]));
+  stateArrived({ about: live.told, revision: live.revision, vertices, faces: patch.length, nodes: 0, corners: Uint32Array.from(corners), patch });
+  frameArrived({ revision: live.revision, vertices, nodes: 0, about: live.stats, lo, step, position }, live.time);
+  window.sent = [];
+  window.send = ({ scalpel }) => {
+    if (!scalpel) return;
+    const p = toShown(scalpel.point);
+    sent.push({ u: p.dot(across), w: p.dot(eye), facing: new THREE.Vector3(...scalpel.normal).dot(eye) });
+  };
+})()"""
+
+
+def wound():
+    session = Session("polyp")
+    session.begin()
+    row = hand.run(ROW % hand.place([0, 0, 0.3])[1])
+    check(f"wound: normals along a row jump: {row}", row["hits"] > 100 and row["flat"] > 0.1 and row["drawn"] < 0.2 * row["flat"])
+    hand.tool("scalpel")
+    hand.run(GROOVE)
+    place = lambda u: hand.place(hand.run(f"toWorld(grooveAt({u}, 0.05, 0))"))
+    hand.drag(along(place(-0.5), place(0.5), steps=20), each=lambda: hand.run("new Promise((done) => setTimeout(done, 10))"))
+    sent = hand.run("sent.splice(0)")
+    over = [s for s in sent if abs(s["u"]) < 0.19]
+    check(f"wound: the edge leaves the skin's plane: {sent}", len(over) > 3 and all(abs(s["w"]) < 1e-3 and s["facing"] > 0.999 for s in sent))
+    check(f"wound: the edge stops before the other side: {sent}", sent[0]["u"] < -0.4 and sent[-1]["u"] > 0.49)
+    hand.drag(along(place(-0.1), place(0.1), steps=4), each=lambda: hand.run("new Promise((done) => setTimeout(done, 10))"))
+    sent = hand.run("sent.splice(0)")
+    check(f"wound: on a wall the edge does not stand on it: {sent}", len(sent) > 3 and all(s["w"] < -0.2 and s["facing"] < 0.9 for s in sent))
+    hand.reload()
+    hand.step()
     session.done()
 
 

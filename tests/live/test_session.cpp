@@ -192,15 +192,23 @@ TEST_CASE("undo and reset go back, and the recording gives the same bytes") {
   cut(session, 3, 1.2, -0.2, 0.1);
   session.undo();
   cut(session, 4, 1.2, 0.6, -0.2);
-  session.set_accuracy(0.02);
+  CHECK(session.effort() == Effort{0.01, 2});
+  session.set_effort({0.02, 1});
   session.advance();
+  CHECK(session.effort() == Effort{0.02, 1});
+  CHECK(session.stats().steps == 1);
   CHECK(session.recording().checkpoints.size() == 2);
   CHECK(replayed(session) == surface_bytes(session.run()));
   session.reset();
   CHECK(session.run().state().frame == 0);
   CHECK(session.pins().empty());
   CHECK(session.recording().blades.empty());
-  cut(session, 5, -0.2, 1.2);
+  CHECK(session.effort() == Effort{0.01, 2});
+  session.set_effort({0.014, 1});
+  cut(session, 5, -0.2, 0.5);
+  session.set_effort({0.014, 3});
+  cut(session, 6, 0.5, 1.2);
+  CHECK(session.stats().steps == 3);
   CHECK(replayed(session) == surface_bytes(session.run()));
 }
 
@@ -248,6 +256,9 @@ TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
           session.strokes() > 0 ? session.undo() : void();
           break;
         case 1:
+          session.set_effort({uniform(0.01, 0.04), 1 + int(random() % 3)});
+          break;
+        case 2:
           session.obey(Set{uniform(1e4, 5e4), uniform(0, 1), {}, geo::Vec3(uniform(-1, 1), uniform(-1, 1), -3)});
           break;
         default:

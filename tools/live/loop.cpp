@@ -22,8 +22,9 @@ class Loop {
         inbox_(inbox),
         server_(server),
         options_(options),
-        pacer_(1 / session.original().frame_rate, session.original().accuracy),
-        scene_(std::make_shared<std::string>(scene_text(session, options.name))) {}
+        pacer_(1 / session.original().frame_rate, session.effort(), session.least_effort()),
+        scene_(std::make_shared<std::string>(scene_text(session, options.name))),
+        effort_(session.effort()) {}
 
   void run() {
     publish();
@@ -56,10 +57,7 @@ class Loop {
           " would have made surfaces cross; the cut goes on where it can");
     pacer_.add(begin, Clock::now());
     steps_ = std::max(0, steps_ - 1);
-    if (const double accuracy = pacer_.accuracy(); accuracy != accuracy_) {
-      if (accuracy_ != 0 || accuracy != session_.original().accuracy) session_.set_accuracy(accuracy);
-      accuracy_ = accuracy;
-    }
+    if (const Effort effort = pacer_.effort(); effort != effort_) session_.set_effort(effort), effort_ = effort;
   }
 
   bool is_deserted() const {
@@ -109,8 +107,8 @@ class Loop {
   bool obey_command(ClientId, const Pause& c) { return paused_ = c.on, true; }
   bool obey_command(ClientId, const Step&) { return paused_ = true, ++steps_, false; }
 
-  // After going back, the accuracy is what the recording says.
-  void restart() { accuracy_ = 0, pacer_.restart(); }
+  // After going back, the effort is what the recording says.
+  void restart() { effort_ = session_.effort(), pacer_.restart(); }
 
   void say(const std::string& sentence) { message_ = sentence, said_ = Clock::now(); }
 
@@ -135,9 +133,8 @@ class Loop {
     std::string message = message_;
     if (message.empty() && pacer_.slow())
       message = "slower than real time: " + std::to_string(static_cast<int>(100 * pacer_.rate() + 0.5)) + " %";
-    return {pacer_.fps(), pacer_.rate(), pacer_.step(), accuracy(), paused_, message};
+    return {pacer_.fps(), pacer_.rate(), pacer_.step(), session_.effort(), paused_, message};
   }
-  double accuracy() const { return session_.run().scene().accuracy; }
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> edges() const {
     auto list = std::make_shared<std::vector<std::pair<std::uint32_t, std::uint32_t>>>();
     const geo::Body& body = session_.run().body();
@@ -156,7 +153,7 @@ class Loop {
   std::set<ClientId> pages_;
   bool came_ = false, paused_ = false;
   int steps_ = 0;  // to be made while paused
-  double accuracy_ = 0;
+  Effort effort_;  // in force, unless the scene changes it
   Clock::time_point gone_ = Clock::now(), said_ = Clock::now();
   std::string message_;
   std::uint64_t number_ = 0, graphs_ = 0;

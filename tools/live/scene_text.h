@@ -9,10 +9,10 @@ namespace live {
 
 /// How the run keeps up with real time.
 struct Pace {
-  double fps = 0;       ///< frames computed per second
-  double rate = 0;      ///< simulated seconds per second
-  double step = 0;      ///< seconds that a frame takes to compute, mean
-  double accuracy = 0;  ///< of the mechanics now, in node spacings
+  double fps = 0;   ///< frames computed per second
+  double rate = 0;  ///< simulated seconds per second
+  double step = 0;  ///< seconds that a frame takes to compute, mean
+  Effort effort;    ///< in force
   bool paused = false;
   std::string message;  ///< of the last seconds; may be empty
 };

@@ -169,9 +169,18 @@ void Session::obey(const Set& set) {
   }
 }
 
-void Session::set_accuracy(double accuracy) {
+Effort Session::effort() const { return {run_.scene().accuracy, run_.scene().steps_per_frame()}; }
+
+Effort Session::least_effort() const {
+  constexpr double coarser = 4, coarsest = 0.1;  // than the scene's accuracy; node spacings
+  const Effort own{setup_.scene.accuracy, setup_.scene.steps_per_frame()};
+  if (!setup_.scene.implicit) return own;
+  return {std::max(own.accuracy, std::min(coarser * own.accuracy, coarsest)), setup_.scene.fracture.on ? own.steps : 1};
+}
+
+void Session::set_effort(const Effort& effort) {
   geo::SceneChange change;
-  change.accuracy = accuracy;
+  change.accuracy = effort.accuracy, change.dt = 1 / run_.scene().frame_rate / effort.steps;
   run_.change(change);
 }
 

@@ -11,6 +11,7 @@
 
 #include <kerf/simulation.h>
 #include "live/command.h"
+#include "live/pace.h"
 #include "live/snapshot.h"
 #include "sim/setup.h"
 
@@ -35,8 +36,14 @@ class Session {
   void reset();
   /// Ends all that a page holds.
   void leave(ClientId page);
-  /// Sets the accuracy of the mechanics, recorded as a change.
-  void set_accuracy(double accuracy);
+  /// Accuracy and steps of the frames to come.
+  Effort effort() const;
+  /// Bound of effort where frames take too long: accuracy four times as coarse, at most 0.1, and
+  /// one step a frame. Explicit steps keep theirs. So do steps in which material cracks by stress:
+  /// longer ones start fewer cracks.
+  Effort least_effort() const;
+  /// Sets them, recorded as a change.
+  void set_effort(const Effort& effort);
 
   /// Computes the next frame. Where it cannot be computed, the run goes back to before the last
   /// stroke, or begins anew; the result is then the reason, else empty.

@@ -191,6 +191,9 @@ struct Scene {
   bool body_contact = true;        ///< penalty between bodies, where self_contact is off
   double contact_stiffness = 1e5;  ///< of that penalty: acceleration per depth, 1/s²
   std::uint64_t fingerprint = 0;   ///< hash of all that decides what the run computes; 0: not from a file
+
+  /// Number of equal time steps in a frame: the fewest that are at most `dt` long.
+  int steps_per_frame() const;
 };
 
 }  // namespace geo

@@ -41,15 +41,24 @@ class Knife {
     return { eye: toWorld(origin), ray: ray.toArray(), depth: this.depth * about.unit, from: from * about.unit };
   }
 }
-// The scalpel: an edge that follows the pointer on the surface, across it.
+// The scalpel: an edge that follows the pointer on the surface, across it. A stroke that is on the skin stays on it: over an open
+// cut it goes on in the plane of the skin that it left. A stroke that begins on a wall of a cut follows the wall.
 class Scalpel {
   begin(x, y) { return this.message(x, y); }
   message(x, y) {
     const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);
-    if (!hit) return null;
+    const at = hit && this.left?.skin && !hit.skin ? this.bridge(origin, ray, hit.distance) : hit;
+    if (!at) return null;
+    if (at === hit) this.left = hit;
     const depth = Math.min(state.depth, 0.5) * 0.8;
-    this.edge = [hit.point.clone().addScaledVector(hit.normal, 0.04), hit.point.clone().addScaledVector(hit.normal, -depth)];
-    return { point: toWorld(hit.point), normal: hit.normal.toArray(), depth: depth * about.unit };
+    this.edge = [at.point.clone().addScaledVector(at.normal, 0.04), at.point.clone().addScaledVector(at.normal, -depth)];
+    return { point: toWorld(at.point), normal: at.normal.toArray(), depth: depth * about.unit };
+  }
+  // Where a ray meets the plane of the skin that was left, in front of the wall that it meets; null: nowhere.
+  bridge(origin, ray, wall) {
+    const { point, normal } = this.left, run = normal.dot(ray), distance = point.clone().sub(origin).dot(normal) / run;
+    if (!(run < -0.1 && distance > 0 && distance <= wall)) return null;
+    return { point: ray.clone().multiplyScalar(distance).add(origin), normal };
   }
 }
 // A spring on what is under the pointer; its other end moves in the plane through that point that faces the eye.

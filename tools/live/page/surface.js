@@ -73,7 +73,9 @@ class Surface {
     if (a === b || b === c || a === c) this.corners.remove(slot);
     else this.corners.put(slot, a, b, c, patch === 0 ? 0 : 1);
   }
-  beforeDraw() {
+  beforeDraw() { this.arrive(); }
+  // Takes the newest frame, if there is one: a change of triangles waits for its positions.
+  arrive() {
     if (!this.changed) return;
     this.changed = false;
     if (!takeFrame()) return;
@@ -136,8 +138,9 @@ class Surface {
     this.fillWire();
     this.wire.visible = state.wire && !this.wire.empty;
   }
-  // The first triangle that a ray meets, in shown coordinates: { slot, bary, distance, point, normal }; null: none.
+  // The first triangle that a ray meets, in shown coordinates: { slot, bary, distance, point, normal, skin }; null: none.
   hit(origin, ray) {
+    this.arrive();
     const c = this.corners, p = live.position, a = new THREE.Vector3(), e = new THREE.Vector3(), f = new THREE.Vector3(), q = new THREE.Vector3(), s = new THREE.Vector3();
     let best = null, least = Infinity;
     for (let slot = 0; slot < c.slots; slot++) {
@@ -153,9 +156,17 @@ class Surface {
       s.cross(e);
       const v = ray.dot(s) / det, t = f.dot(s) / det;
       if (v < 0 || u + v > 1 || t <= 0 || t >= least) continue;
-      least = t, best = { slot, bary: [1 - u - v, u, v], distance: t, normal: new THREE.Vector3().crossVectors(e, f).normalize() };
+      least = t, best = { slot, bary: [1 - u - v, u, v], distance: t, flat: new THREE.Vector3().crossVectors(e, f).normalize() };
     }
-    if (best) best.point = ray.clone().multiplyScalar(least).add(origin);
+    if (!best) return null;
+    best.point = ray.clone().multiplyScalar(least).add(origin), best.skin = c.kind[best.slot] === 0;
+    best.normal = this.normalAt(best);
     return best;
+  }
+  // The normal that is drawn: smooth within skin or wall, with a jump at sharp edges. Where corners cancel, the triangle's own.
+  normalAt({ slot, bary, flat }) {
+    const sum = new THREE.Vector3(), n = new THREE.Vector3();
+    bary.forEach((w, k) => sum.addScaledVector(n.fromArray(this.normal.array, 3 * this.corners.group[3 * slot + k]), w));
+    return sum.dot(flat) > 1e-3 ? sum.normalize() : flat;
   }
 }

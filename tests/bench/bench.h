@@ -48,6 +48,7 @@ struct Options {
   std::vector<std::string> models;  ///< closed meshes in files
   std::vector<std::size_t> nodes;   ///< in the graph or the body
   int cuts = 500;                   ///< through the block
+  bool scenes = true;               ///< simulation: the scenes of the samples, too
   bool json = false;
 };
 
@@ -67,5 +68,9 @@ int validate(const Options& options);
 /// Figures by name: one JSON object on a line, or a table.
 using Figures = std::map<std::string, double>;
 void print(const Figures& figures, bool json);
+
+/// Runs scenes of the samples: frames a second without files, pairs of triangles that cross in any
+/// frame, refused crack steps, crumbs.
+void simulation_scenes(bool json, Figures& figures);
 
 }  // namespace bench

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   t.option("--frequency", frequencies, "Sizes of the pumpkin, 20 f^2 triangles each (11, 22, 45, 89, 179)");
   t.option("--nodes", nodes,
            "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700; "
-           "simulation: 2000, 8000, 32000, 128000)");
+           "simulation: 2000, 8000, 32000, 128000, 512000, 1000000, after the scenes of the samples)");
   t.option("--cuts", options.cuts, "How many cuts go through the block");
   t.option("--model", options.models, "Closed meshes to measure as well");
   return t.run(argc, argv, [&] {
@@ -55,8 +55,9 @@ int main(int argc, char** argv) {
       options.nodes = what == "concave"      ? std::vector<std::size_t>{100000}
                       : what == "contact"    ? std::vector<std::size_t>{230, 920, 3700}
                       : what == "mechanics"  ? std::vector<std::size_t>{4000, 27000}
-                      : what == "simulation" ? std::vector<std::size_t>{2000, 8000, 32000, 128000}
+                      : what == "simulation" ? std::vector<std::size_t>{2000, 8000, 32000, 128000, 512000, 1000000}
                                              : std::vector<std::size_t>{10000, 100000, 1000000};
+    options.scenes = nodes.empty();
     options.json = t.json;
     known.at(what)(options);
   });

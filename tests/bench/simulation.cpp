@@ -34,7 +34,8 @@ double peak_memory() {
 int simulation(const Options& options) {
   geo::set_threads(2);
   Figures figures;
-  double first_mechanics = 0, first_contact = 0, first_nodes = 0;
+  if (options.scenes) simulation_scenes(options.json, figures);
+  double first_mechanics = 0, first_contact = 0, first_processor = 0, first_nodes = 0;
   for (const std::size_t nodes : options.nodes) {
     const geo::Scene scene = geo::read_scene(KERF_HALVE_SCENE, {{"body.nodes", std::to_string(nodes)}});
     // 9,680 triangles at 2,000 nodes, and as many for a node of the surface with more.
@@ -42,6 +43,7 @@ int simulation(const Options& options) {
     geo::Simulation run(scene, geo::make_pumpkin(frequency));
     geo::FrameStats total;
     geo::Stopwatch watch;
+    const double begin = cpu_seconds();
     for (int f = 0; f < frames; ++f) {
       const geo::FrameStats frame = run.advance_frame();
       total += frame;
@@ -49,9 +51,10 @@ int simulation(const Options& options) {
         std::fprintf(stderr, "%zu nodes, frame %2d: mechanics %.2f s, contact %.2f s, CG %zu, Newton %zu\n", nodes,
                      f + 1, frame.mechanics_seconds, frame.contact_seconds, frame.cg, frame.newton);
     }
-    const double seconds = watch.lap();
+    const double seconds = watch.lap(), processor = cpu_seconds() - begin;
     const std::string name = "_" + short_name(nodes);
     figures["seconds_per_frame" + name] = seconds / frames;
+    figures["processor_seconds_per_frame" + name] = processor / frames;
     figures["mechanics_seconds" + name] = total.mechanics_seconds;
     figures["contact_seconds" + name] = total.contact_seconds;
     figures["contact_share" + name] = total.contact_seconds / seconds;
@@ -67,8 +70,11 @@ int simulation(const Options& options) {
     if (nodes < 8000) continue;
     if (first_nodes == 0) {
       first_nodes = double(nodes), first_mechanics = total.mechanics_seconds, first_contact = total.contact_seconds;
+      first_processor = processor;
       continue;
     }
+    if (nodes > 512000) continue;  // the exponents are those from 8,000 nodes to 512,000
+    figures["processor_exponent"] = growth(first_processor, processor, first_nodes, double(nodes));
     figures["mechanics_exponent"] = growth(first_mechanics, total.mechanics_seconds, first_nodes, double(nodes));
     figures["contact_exponent"] = growth(first_contact, total.contact_seconds, first_nodes, double(nodes));
   }

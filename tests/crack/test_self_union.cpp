@@ -12,7 +12,8 @@ using namespace geo;
 
 namespace {
 
-void add(TriangleMesh& mesh, const TriangleMesh& other, const Vec3& to, bool turned = false) {
+// `other`: a copy, as it may be `mesh` itself.
+void add(TriangleMesh& mesh, TriangleMesh other, const Vec3& to, bool turned = false) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Vec3& p : other.vertices) mesh.vertices.push_back(p + to);
   for (auto t : other.triangles) {

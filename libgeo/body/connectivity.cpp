@@ -217,6 +217,14 @@ ConnectivityMismatch find_mismatch(const Body& body, std::span<const NodePair> c
   return std::move(comparison.mismatch);
 }
 
+void note_parts(const Body& body, std::span<const DetachedPiece> detached, ConnectivityMismatch& mismatch) {
+  std::map<std::int32_t, std::set<std::int32_t>> parts;  // by the label before
+  for (const DetachedPiece& d : detached)
+    for (const SurfaceVertexId v : {d.at, d.rest}) parts[d.from].insert(body.cache->piece[v.index()]);
+  for (const auto& [from, labels] : parts)
+    for (const auto label : labels) mismatch.parts[label] = labels;
+}
+
 void pair_new_nodes(const Body& body, Regions& components, NodeId first_new, ConnectivityMismatch& mismatch) {
   for (std::uint32_t i = first_new.value; i < body.nodes.size(); ++i) components.seed(i);
   for (std::uint32_t i = first_new.value; i < body.nodes.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 
 #include "body/node_insertion.h"
@@ -18,6 +19,8 @@ struct ConnectivityMismatch {
   std::vector<NodePair> disconnected;             ///< pairs of nodes of one piece in two components of G
   std::map<std::int32_t, NodeId> representative;  ///< by label: a node of each piece visited; invalid
                                                   ///< where the piece has none yet
+  std::map<std::int32_t, std::set<std::int32_t>> parts;  ///< by label, of a piece that was parted: itself and the other
+                                                         ///< parts; set by note_parts()
   /// Do components and pieces correspond?
   bool none() const { return empty_pieces.empty() && disconnected.empty(); }
 };
@@ -33,6 +36,9 @@ ConnectivityMismatch find_mismatch(const Body& body, const std::vector<std::uint
 ConnectivityMismatch find_mismatch(const Body& body, std::span<const NodePair> cut,
                                    std::span<const DetachedPiece> detached, std::span<const SurfaceVertexId> touched,
                                    NodeId first_new);
+
+/// Notes which pieces were one before the step.
+void note_parts(const Body& body, std::span<const DetachedPiece> detached, ConnectivityMismatch& mismatch);
 
 /// Pairs each component that consists of nodes from `first_new` on with another node of its piece,
 /// if there is one.
@@ -54,8 +60,10 @@ using GraphUpdater = std::function<void(NodeId first_new, std::span<const NodePa
 
 /// § 6.4, passages too narrow for the sampling: adds edges, then nodes, until no piece is empty and
 /// all pairs are connected. Works in rounds of decreasing spacing; `update` is called once a round.
-/// Afterwards mismatch.representative has a node of each piece visited.
-void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update);
+/// Afterwards mismatch.representative has a node of each piece visited. `fresh`: crack faces of this
+/// step, ascending.
+void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
+                         std::span<const FaceId> fresh = {});
 
 /// The nodes of each detached piece, ascending. A piece that came apart into n parts gives n − 1
 /// lists: the part with most nodes is left out.

@@ -42,15 +42,26 @@ bool insert_nodes_along(Body& body, NodeId i, NodeId j, double spacing, std::vec
   return true;
 }
 
-// Inserts a node into the piece without nodes that has surface vertex v; invalid where none fits.
-NodeId insert_node_into_piece(Body& body, SurfaceVertexId v) {
-  const auto nearest = [&](const Vec3& x) {
-    return NodeId(body.cache->grid.nearest(body.nodes.position, x, 1, ~0u, [](auto) { return true; })[0]);
+// The node that gives volume and motion to a new one at x, in a piece without nodes: the nearest in
+// `parts`, the pieces that were one with it before the step; else the nearest of all. A node of
+// another piece may have moved far away.
+NodeId donor_of(const Body& body, const Vec3& x, const std::set<std::int32_t>& parts) {
+  const auto nearest = [&](const auto& accept) {
+    const auto found = body.cache->grid.nearest(body.nodes.position, x, 1, ~0u, accept);
+    return found.empty() ? NodeId() : NodeId(found[0]);
   };
-  const double spacing = body.nodes.spacing[nearest(body.surface.point(body.surface.site(v))).index()];
+  NodeId donor;
+  if (!parts.empty()) donor = nearest([&](std::uint32_t i) { return parts.count(piece_of(body, NodeId(i))) != 0; });
+  return donor.valid() ? donor : nearest([](std::uint32_t) { return true; });
+}
+
+// Inserts a node into the piece without nodes that has surface vertex v; invalid where none fits.
+NodeId insert_node_into_piece(Body& body, SurfaceVertexId v, const std::set<std::int32_t>& parts) {
+  const NodeId near = donor_of(body, body.surface.point(body.surface.site(v)), {});
+  const double spacing = body.nodes.spacing[near.index()];
   const auto x = point_in_piece(body.surface, v, spacing,
                                 [&](Side s) { return body.cache->piece[body.surface.surface_vertex(s, 0).index()]; });
-  return x ? insert_node(body, *x, nearest(*x), spacing) : NodeId();
+  return x ? insert_node(body, *x, donor_of(body, *x, parts), spacing) : NodeId();
 }
 
 // Nearest nodes within a piece. Remembers the pieces of nodes; ignores nodes inserted later.
@@ -156,8 +167,9 @@ std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<Si
 // mismatch.
 class ConnectivityRepair {
  public:
-  ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update)
-      : body_(body), mismatch_(mismatch), update_(update) {}
+  ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
+                     std::span<const FaceId> fresh)
+      : body_(body), mismatch_(mismatch), update_(update), fresh_(fresh) {}
   void run() {
     // Rounds have spacing 0.7 · 0.8^round: the first is denser than the sampling, which missed the
     // passage, and the last (round 11) has 6 % of it. More rounds: finer nodes in passages.
@@ -168,7 +180,9 @@ class ConnectivityRepair {
       joins_.clear();
       const auto faces = connect_components(round, scale * body_.cache->grid.cell());
       // Limited, so that a passage that stays closed costs little.
-      insert_nodes_near(body_, faces, {.spacing = scale * body_.cache->grid.cell(), .seed = 0x6b657266u, .limit = 100});
+      insert_nodes_near(
+          body_, faces,
+          {.spacing = scale * body_.cache->grid.cell(), .seed = 0x6b657266u, .limit = 100, .fresh = fresh_});
       if (first_new.index() < body_.nodes.size() || !joins_.empty())
         update_(first_new, joins_);
       else if (round >= 1)
@@ -181,7 +195,7 @@ class ConnectivityRepair {
   void fill_empty_pieces() {
     for (const auto v : mismatch_.empty_pieces) {
       const auto piece = body_.cache->piece[v.index()];
-      if (const NodeId i = insert_node_into_piece(body_, v); i.valid())
+      if (const NodeId i = insert_node_into_piece(body_, v, mismatch_.parts[piece]); i.valid())
         mismatch_.representative[piece] = i, body_.cache->pieces_without_node.erase(piece);
       else
         mismatch_.representative.erase(piece), body_.cache->pieces_without_node.insert(piece);
@@ -229,7 +243,7 @@ class ConnectivityRepair {
   }
   void find_remaining(NodeId first_new) {
     ConnectivityMismatch left;
-    left.representative = std::move(mismatch_.representative);
+    left.representative = std::move(mismatch_.representative), left.parts = std::move(mismatch_.parts);
     Regions components = components_of(body_);
     for (const auto& [a, b] : mismatch_.disconnected) {
       components.seed(a.value), components.seed(b.value);
@@ -242,6 +256,7 @@ class ConnectivityRepair {
   Body& body_;
   ConnectivityMismatch& mismatch_;
   const GraphUpdater& update_;
+  const std::span<const FaceId> fresh_;
   std::vector<NodePair> joins_;                // of this round
   std::set<std::pair<NodeId, NodeId>> tried_;  // ends of taut paths
 };
@@ -268,8 +283,9 @@ std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double r
   return point_between_corners(k, sides, piece, wanted);
 }
 
-void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update) {
-  ConnectivityRepair(body, mismatch, update).run();
+void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
+                         std::span<const FaceId> fresh) {
+  ConnectivityRepair(body, mismatch, update, fresh).run();
 }
 
 }  // namespace geo

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "kerf/body.h"
@@ -24,8 +25,8 @@ bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId exc
 /// so it suits small boxes.
 class BoxVisibility {
  public:
-  /// Reads the faces in `box`.
-  BoxVisibility(const Complex& complex, const Box3& box);
+  /// Reads the faces in `box`, without those in `except` (ascending).
+  BoxVisibility(const Complex& complex, const Box3& box, std::span<const FaceId> except = {});
   /// As is_blocked(). Precondition: the segment lies in the box.
   bool blocked(const Vec3& p, const Vec3& q) const;
 

@@ -66,11 +66,13 @@ class CrackSpacing {
   std::map<std::array<double, 3>, double> known_;
 };
 
-// The nearest nodes to x that see it, at most twelve; `nearest` are the nearest of all.
-std::vector<std::uint32_t> visible_nodes(const Body& body, const Vec3& x, const std::vector<std::uint32_t>& nearest) {
+// The nearest nodes to x that see it, at most twelve; `nearest` are the nearest of all. Faces in
+// `except` do not hide any.
+std::vector<std::uint32_t> visible_nodes(const Body& body, const Vec3& x, const std::vector<std::uint32_t>& nearest,
+                                         std::span<const FaceId> except = {}) {
   Box3 around{x, x};
   for (const auto i : nearest) around.add(body.nodes.position[i]);
-  const BoxVisibility visibility(body.surface, around);
+  const BoxVisibility visibility(body.surface, around, except);
   std::vector<std::uint32_t> visible;
   for (const auto i : nearest)
     if (visible.size() < 12 && !visibility.blocked(body.nodes.position[i], x)) visible.push_back(i);
@@ -95,8 +97,8 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
     if (std::any_of(near.begin(), near.end(),
                     [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
       continue;
-    // The donor is the nearest node that sees the new one; else, in a fresh sliver, the nearest of
-    // all.
+    // The donor is the nearest node that sees the new one; else, in a fresh sliver, the nearest that
+    // saw it before this step; else the nearest of all. Another may have moved far away.
     const auto nearest =
         // 24 candidates for at most twelve visible nodes. Fewer are found where the crack hides
         // more than half.
@@ -104,7 +106,9 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
     const auto visible = visible_nodes(body, s.position, nearest);
     // Where rounding has exchanged two sheets, even air may be in front of a side with material.
     if (visible.empty() && !is_inside(body.surface, s.position)) continue;
-    const NodeId donor(visible.empty() ? nearest[0] : visible[0]);
+    const auto seen_before =
+        visible.empty() ? visible_nodes(body, s.position, nearest, options.fresh) : std::vector<std::uint32_t>();
+    const NodeId donor(!visible.empty() ? visible[0] : !seen_before.empty() ? seen_before[0] : nearest[0]);
     const NodeId node = insert_node(body, s.position, donor, s.spacing);
     if (options.spacing == 0 && !visible.empty()) {
       // In proportion to the spacing and wide enough for a dozen neighbours, as the sampling makes

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct InsertionOptions {
                                         ///< in proportion
   std::uint64_t seed = 0;               ///< of the samples
   std::size_t limit = std::size_t(-1);  ///< most nodes inserted
+  std::span<const FaceId> fresh = {};   ///< crack faces of this step, ascending: what they part moved as one before
 };
 
 /// § 6.4: inserts nodes on both sides of the faces, inside the material, visible from the face, and

@@ -50,7 +50,7 @@ class BodyUpdater {
     const auto& faces = delta.crack.new_crack_faces;
     report(progress_, "new nodes", 0, faces.size());
     delta.moved_nodes = move_nodes_off(body_, faces);
-    if (body_.resample_limit > 0) insert_nodes_near(body_, faces, {.seed = body_.crack_steps});
+    if (body_.resample_limit > 0) insert_nodes_near(body_, faces, {.seed = body_.crack_steps, .fresh = faces});
   }
   /// Steps 4 and 6: E_cut, E_new and the neighbours of P_update (§ 6.3, 6.4).
   void update_graph_and_neighbors() {
@@ -76,8 +76,9 @@ class BodyUpdater {
     auto mismatch = relabelled ? find_mismatch(body_, component)
                                : find_mismatch(body_, graph_update.cut_edges, pieces,
                                                delta.crack.touched_surface_vertices, delta.first_new_node);
+    note_parts(body_, pieces, mismatch);
     first_repair_node_ = body_.nodes.size();
-    repair_connectivity(body_, mismatch, [&](NodeId first_new, std::span<const NodePair> joins) {
+    const auto update = [&](NodeId first_new, std::span<const NodePair> joins) {
       const auto more = update_graph({.nodes = body_.nodes,
                                       .grid = body_.cache->grid,
                                       .first_new = first_new,
@@ -86,7 +87,8 @@ class BodyUpdater {
                                       .joins = joins},
                                      body_.graph);
       updated_.insert(more.updated_nodes.begin(), more.updated_nodes.end());
-    });
+    };
+    repair_connectivity(body_, mismatch, update, delta.crack.new_crack_faces);
     delta.detached = detached_nodes(body_, pieces, mismatch);
     delta.updated_nodes.assign(updated_.begin(), updated_.end());
     mark_debris(body_, delta.updated_nodes);

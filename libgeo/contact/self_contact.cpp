@@ -87,11 +87,13 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
   return step;
 }
 
-ContactStats SelfContact::finish_step(ContactStep step, const Body& body, const std::vector<Vec3>& displacement) {
+ContactStats SelfContact::finish_step(ContactStep step, const Body& body, const Solid& solid,
+                                      const std::vector<Vec3>& displacement) {
   if (!step.penalty) throw std::logic_error("the contact step was finished before");
   if (step.revision != revision_) throw std::logic_error("the surface has changed since the contact step began");
   Stopwatch clock;
   const std::size_t touching = step.penalty->pressing();
+  take_rotations(solid);
   ContactStats stats = move_surface(body, displacement, &step.tracking_error);
   stats.touching = touching;
   spare_penalty_ = std::move(step.penalty);
@@ -103,6 +105,7 @@ ContactStats SelfContact::finish_step_with_impulses(const Body& body, const Soli
                                                     const std::vector<Vec3>& before, double dt,
                                                     const std::vector<std::uint8_t>& fixed, State& state) {
   Stopwatch clock;
+  take_rotations(solid);
   const std::size_t touching =
       resolve_with_impulses({body, solid, weights_, before, dt, fixed},
                             {gap(), options_.friction, options_.recovery, options_.rounds}, surface_, near_, state);
@@ -110,6 +113,10 @@ ContactStats SelfContact::finish_step_with_impulses(const Body& body, const Soli
   stats.touching = touching;
   stats.seconds = clock.lap();
   return stats;
+}
+
+void SelfContact::take_rotations(const Solid& solid) {
+  if (weights_.set_rotations(solid)) targets_ = {};
 }
 
 // Opens sheets, then moves all vertices towards their targets at displacements u. `tracking_error`:

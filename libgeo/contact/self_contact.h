@@ -56,7 +56,8 @@ class SelfContact {
   /// Moves the surface after the nodes' implicit step, which has ended at `displacement`, per node.
   /// Throws std::logic_error when the surface has changed since `step` began, or `step` was
   /// finished.
-  ContactStats finish_step(ContactStep step, const Body& body, const std::vector<Vec3>& displacement);
+  ContactStats finish_step(ContactStep step, const Body& body, const Solid& solid,
+                           const std::vector<Vec3>& displacement);
   /// Moves the surface after a step of the nodes in which no contact acted: corrects displacements
   /// and velocities by impulses first. The step began at displacements `before` and took dt
   /// seconds.
@@ -90,6 +91,7 @@ class SelfContact {
   std::uint64_t revision() const { return revision_; }
 
  private:
+  void take_rotations(const Solid& solid);
   double gap() const { return options_.gap * surface().edge; }
   ContactStats move_surface(const Body& body, const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error);
 

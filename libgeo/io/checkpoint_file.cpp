@@ -71,6 +71,23 @@ FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const K
   return front;
 }
 
+std::vector<Vec3> columns_of(const std::vector<Mat3>& matrices) {
+  std::vector<Vec3> columns;
+  for (const Mat3& m : matrices)
+    for (int c = 0; c < 3; ++c) columns.push_back(m.col(c));
+  return columns;
+}
+
+// The matrices of a section, by columns; none where the file does not have it.
+std::vector<Mat3> read_matrices(const KerfFile& file, const std::string& section) {
+  if (file.sections().count(section) == 0) return {};
+  const auto columns = read_points(file, section);
+  if (columns.size() % 3 != 0) file.fail("has an incomplete matrix in " + section);
+  std::vector<Mat3> matrices(columns.size() / 3);
+  for (std::size_t i = 0; i < columns.size(); ++i) matrices[i / 3].col(static_cast<int>(i % 3)) = columns[i];
+  return matrices;
+}
+
 }  // namespace
 
 void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene) {
@@ -109,10 +126,9 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
                               kerf_array("run/time", std::span(&state.time, 1))};
   if (!state.motion.acceleration.empty())
     more.push_back(kerf_array("run/acceleration", coordinates(state.motion.acceleration), 3));
-  std::vector<Vec3> plastic;  // columns
-  for (const Mat3& m : state.motion.plastic)
-    for (int c = 0; c < 3; ++c) plastic.push_back(m.col(c));
+  const std::vector<Vec3> plastic = columns_of(state.motion.plastic), rotation = columns_of(state.motion.rotation);
   if (!plastic.empty()) more.push_back(kerf_array("run/plastic", coordinates(plastic), 3));
+  if (!rotation.empty()) more.push_back(kerf_array("run/rotation", coordinates(rotation), 3));
   more.push_back(
       {"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
   write_body_with(out, body, more);
@@ -125,13 +141,8 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   state.motion.displacement = read_points(file, "run/displacement");
   state.motion.velocity = read_points(file, "run/velocity");
   if (file.sections().count("run/acceleration") != 0) state.motion.acceleration = read_points(file, "run/acceleration");
-  if (file.sections().count("run/plastic") != 0) {
-    const auto plastic = read_points(file, "run/plastic");
-    if (plastic.size() % 3 != 0) file.fail("the plastic strains of the run are incomplete");
-    state.motion.plastic.resize(plastic.size() / 3);
-    for (std::size_t i = 0; i < plastic.size(); ++i)
-      state.motion.plastic[i / 3].col(static_cast<int>(i % 3)) = plastic[i];
-  }
+  state.motion.plastic = read_matrices(file, "run/plastic");
+  state.motion.rotation = read_matrices(file, "run/rotation");
   state.surface = read_points(file, "run/surface");
   state.body_index = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");

@@ -124,6 +124,7 @@ Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
       body(std::move(body_in)),
       solid(body, materials_of(scene, state.body_index)),
       obstacles(scene) {
+  solid.set_rotations(state.motion);
   reset_contact();
   hold_material(state.time);
   apply_changes(state.time);
@@ -132,6 +133,7 @@ Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
 void Simulation::Impl::restore(Body new_body, RunState new_state) {
   state = checked(scene, new_body, std::move(new_state)), body = std::move(new_body);
   if (std::exchange(cut_since_build, false)) solid = Solid(body, materials_of(scene, state.body_index));
+  solid.set_rotations(state.motion);
   obstacles = Obstacles(scene), environment = {}, wedge = {}, pull = {};
   reset_contact();
   hold_material(state.time);

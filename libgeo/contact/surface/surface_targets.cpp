@@ -1,4 +1,4 @@
-// Target = rest position + Σ w_i u_i over the vertex' stencil (surface_weights.h).
+// Target = rest position + Σ w_i u_i over the vertex' stencil + rotated() (surface_weights.h).
 #include "contact/surface/surface_targets.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ std::vector<Vec3> surface_targets(const Body& body, const SurfaceWeights& weight
   parallel_for(result.size(), vertices_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       if (const SurfaceVertexId id(v); body.surface.alive(id))
-        result[v] = body.surface.point(body.surface.site(id)) + result[v];
+        result[v] = body.surface.point(body.surface.site(id)) + (result[v] + weights.rotated(v));
   });
   return result;
 }
@@ -32,7 +32,9 @@ const std::vector<Vec3>& SurfaceTargetCache::at(const Body& body, const SurfaceW
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       const SurfaceVertexId v(stale_[i]);
       targets_[v.index()] =
-          body.surface.alive(v) ? Vec3(body.surface.point(body.surface.site(v)) + offsets[i]) : Vec3(Vec3::Zero());
+          body.surface.alive(v)
+              ? Vec3(body.surface.point(body.surface.site(v)) + (offsets[i] + weights.rotated(v.index())))
+              : Vec3(Vec3::Zero());
     }
   } else {
     targets_ = surface_targets(body, weights, u);

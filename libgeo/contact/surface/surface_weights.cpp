@@ -9,6 +9,7 @@
 #include "contact/surface/contact_surface.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/kernel.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
@@ -57,10 +58,11 @@ class StencilSums {
 }  // namespace
 
 void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
-  stencils_.clear(), heaviest_.clear(), norm_.clear(), area_.clear();
+  stencils_.clear(), heaviest_.clear(), norm_.clear(), area_.clear(), arms_.clear();
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
   compute(body, solid, all);
+  set_rotations(solid);
 }
 
 std::vector<std::uint32_t> SurfaceWeights::apply_delta(const Body& body, const Solid& solid, const BodyDelta& delta) {
@@ -86,7 +88,18 @@ std::vector<std::uint32_t> SurfaceWeights::apply_delta(const Body& body, const S
   for (std::uint32_t v = 0; v < n; ++v)
     if (stale[v]) vertices.push_back(v);
   compute(body, solid, vertices);
+  set_rotations(solid);
   return vertices;
+}
+
+bool SurfaceWeights::set_rotations(const Solid& solid) {
+  const NodalGradientOperator& mls = solid.discretisation().mls;
+  rotated_.clear();
+  if (!mls.has_rotations()) return false;
+  rotated_.resize(arms_.size(), Vec3::Zero());
+  for (std::size_t v = 0; v < arms_.size(); ++v)
+    for (const Arm& a : arms_[v]) rotated_[v] += mls.undetermined(a.node) * a.arm;
+  return true;
 }
 
 std::vector<Vec3> SurfaceWeights::interpolate(std::span<const std::uint32_t> vertices,
@@ -101,6 +114,8 @@ std::vector<Vec3> SurfaceWeights::interpolate(std::span<const std::uint32_t> ver
 void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
   stencils_.resize(body.surface.surface_vertex_count());
   heaviest_.resize(stencils_.size(), ~0u), norm_.resize(stencils_.size(), 0), area_.resize(stencils_.size(), 0);
+  arms_.resize(stencils_.size());
+  const NodalGradientOperator& mls = solid.discretisation().mls;
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     std::vector<std::pair<NodeId, Vec3>> gradient;
@@ -110,7 +125,7 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
       auto& stencil = stencils_[v];
-      stencil.clear(), heaviest_[v] = ~0u, norm_[v] = area_[v] = 0;
+      stencil.clear(), heaviest_[v] = ~0u, norm_[v] = area_[v] = 0, arms_[v].clear();
       if (!body.surface.alive(id)) continue;
       area_[v] = vertex_area(body.surface, id);
       carrier_nodes(body, id, bound);
@@ -122,6 +137,8 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
       if (!(total > 0)) bound.resize(1), bound[0].second = total = 1;
       for (const auto& [i, w] : bound) {
         sums.add(i, w / total);
+        if (mls.quality(i.index()) != MomentQuality::good)
+          arms_[v].push_back({i.value, w / total * (x - body.nodes.position[i.index()])});
         gradient.clear();
         solid.gradient_stencil(i, gradient);
         for (const auto& [j, g] : gradient) sums.add(j, w / total * g.dot(x - body.nodes.position[i.index()]));

@@ -24,6 +24,10 @@ class SurfaceWeights {
   /// rebuild(). Returns their vertices, ascending.
   std::vector<std::uint32_t> apply_delta(const Body& body, const Solid& solid, const BodyDelta& delta);
 
+  /// Takes over the rotations of debris (State::rotation) from the solid, after a step of it. Returns
+  /// whether there is any.
+  bool set_rotations(const Solid& solid);
+
   /// Number of surface vertices.
   std::size_t size() const { return stencils_.size(); }
   /// The stencil of surface vertex v; empty if v is dead or no node carries it.
@@ -36,15 +40,24 @@ class SurfaceWeights {
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
   /// The nodes' values interpolated at surface vertex v; zero if no node carries it.
   Vec3 interpolate(std::size_t v, const std::vector<Vec3>& values) const { return weighted_sum(stencils_[v], values); }
+  /// What Eq. 1 adds to the displacement of surface vertex v by rotations of debris; it is constant
+  /// in a step.
+  Vec3 rotated(std::size_t v) const { return rotated_.empty() ? Vec3(Vec3::Zero()) : rotated_[v]; }
   /// interpolate() for many vertices, in parallel; equal to the bit.
   std::vector<Vec3> interpolate(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const;
 
  private:
+  struct Arm {
+    std::uint32_t node;
+    Vec3 arm;  // from the node to the vertex, times the node's kernel weight
+  };
   void compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices);
 
   std::vector<std::vector<Entry>> stencils_;
   std::vector<std::uint32_t> heaviest_;
   std::vector<double> area_, norm_;
+  std::vector<std::vector<Arm>> arms_;  // per vertex: to its nodes without a full gradient
+  std::vector<Vec3> rotated_;           // per vertex; empty: zero
 };
 
 }  // namespace geo

@@ -30,6 +30,8 @@ struct State {
   std::vector<Vec3> velocity;           ///< per node, model units per second
   std::vector<Vec3> acceleration = {};  ///< per node, of the last time step, for the inertial predictor; empty: unknown
   std::vector<Mat3> plastic = {};       ///< per material point: plastic part of the Green strain; empty: none yet
+  std::vector<Mat3> rotation = {};      ///< per node: rotation of debris, whose neighbours do not determine it; the
+                                        ///< identity for other nodes; empty: no debris yet
 };
 
 /// External actions on the nodes: gravity, loads, clamps, the ground, contact.
@@ -111,11 +113,12 @@ class Solid {
   /// Counts nodes and material points by the quality of their moment matrix.
   MomentQualityCounts moment_quality_counts() const;
 
-  /// ∇u at every node by moving least squares, exact for linear fields where the moment matrix has
-  /// full rank.
+  /// ∇u of displacements at every node by moving least squares, exact for linear fields where the
+  /// moment matrix has full rank. Elsewhere it is completed by the rotation of debris
+  /// (set_rotations()).
   std::vector<Mat3> gradients(const std::vector<Vec3>& u) const;
   /// Appends j and g_j (1/m) for every node j with ∇u_i = Σ u_j g_jᵀ, node i itself included; the
-  /// g_j sum to zero.
+  /// g_j sum to zero. Without the rotation of debris.
   void gradient_stencil(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) const;
   /// Elastic energy at displacements u, J.
   double energy(const std::vector<Vec3>& u) const;
@@ -138,7 +141,10 @@ class Solid {
   StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3);
   /// Advances `state` by dt with symplectic Euler, in as many substeps as the fastest wave
   /// requires; twice as many where energy would rise.
-  StepReport step_explicit(State& state, double dt, const Environment& environment) const;
+  StepReport step_explicit(State& state, double dt, const Environment& environment);
+  /// Takes over State::rotation of a state that this solid has not computed, as one read from a
+  /// file. Steps and updates do it themselves.
+  void set_rotations(const State& state);
 
   /// Total linear momentum, kg m/s.
   Vec3 momentum(const State& state) const;

@@ -61,6 +61,17 @@ void NodalGradientOperator::update(const NodeSet& nodes, const VisibilityGraph& 
   });
 }
 
+void NodalGradientOperator::set_rotations(const std::vector<Mat3>& rotation) {
+  undetermined_.assign(rotation.empty() ? 0 : size(), Mat3::Zero());
+  for (std::size_t i = 0; i < undetermined_.size(); ++i) {
+    const Node& node = nodes_[i];
+    if (node.quality == MomentQuality::good) continue;
+    Mat3 rest = Mat3::Identity();  // 1 − Σ x gᵀ
+    for (std::size_t q = 0; q < node.neighbors.size(); ++q) rest -= node.offset[q] * node.gradient[q].transpose();
+    undetermined_[i] = (rotation[i] - Mat3::Identity()) * rest;
+  }
+}
+
 Mat3 NodalGradientOperator::gradient(std::size_t i, const std::vector<Vec3>& u) const {
   Mat3 g = Mat3::Zero();
   const Node& node = nodes_[i];
@@ -73,8 +84,11 @@ std::vector<PaddedMat3> NodalGradientOperator::padded_gradients(const std::vecto
   const std::vector<PaddedVec3> values = padded(u);
   std::vector<PaddedMat3> g(size());
   parallel_for(size(), 128, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
+    for (std::size_t i = begin; i < end; ++i) {
       g[i] = mls_gradient(nodes_[i].neighbors, nodes_[i].gradient.data(), values.data(), static_cast<std::uint32_t>(i));
+      if (undetermined_.empty()) continue;
+      for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(g[i].at[c]) += undetermined_[i].col(c);
+    }
   });
   return g;
 }

@@ -28,9 +28,20 @@ class NodalGradientOperator {
   std::size_t size() const { return nodes_.size(); }
   /// The quality of a node's moment matrix.
   MomentQuality quality(std::size_t i) const { return nodes_[i].quality; }
-  /// ∇u at node i.
+  /// Sets the rotations R_i of nodes without a full gradient (State::rotation); empty: none.
+  void set_rotations(const std::vector<Mat3>& rotation);
+  /// Whether rotations are set.
+  bool has_rotations() const { return !undetermined_.empty(); }
+  /// ∇u at node i, as far as its neighbours determine it: linear in u.
   Mat3 gradient(std::size_t i, const std::vector<Vec3>& u) const;
-  /// ∇u at all nodes, in parallel.
+  /// What displacements have beyond gradient(): (R_i − 1) (1 − Σ_j x_ij g_ijᵀ). Zero where the rank
+  /// is full.
+  Mat3 undetermined(std::size_t i) const { return undetermined_.empty() ? Mat3(Mat3::Zero()) : undetermined_[i]; }
+  /// ∇u at node i for displacements u: both parts.
+  Mat3 displacement_gradient(std::size_t i, const std::vector<Vec3>& u) const {
+    return gradient(i, u) + undetermined(i);
+  }
+  /// displacement_gradient() at all nodes, in parallel.
   std::vector<Mat3> gradients(const std::vector<Vec3>& u) const;
   /// gradients(), padded.
   std::vector<PaddedMat3> padded_gradients(const std::vector<Vec3>& u) const;
@@ -51,9 +62,10 @@ class NodalGradientOperator {
 
  private:
   std::vector<Node> nodes_;
+  std::vector<Mat3> undetermined_;  // per node; empty: zero
 };
 
-/// Gradients at nodes, computed at first use: for queries that concern few nodes of a large body.
+/// Displacement gradients at nodes, computed at first use: for queries that concern few nodes of a large body.
 /// Threads may read the same object at the same time. Keeps references to the operator and the
 /// displacements.
 class LazyNodalGradients {
@@ -67,7 +79,7 @@ class LazyNodalGradients {
   /// ∇u at node i.
   Mat3 operator[](std::size_t i) const {
     if (state_[i].load(std::memory_order_acquire) == State::known) return gradient_[i];
-    const Mat3 gradient = operator_->gradient(i, *u_);
+    const Mat3 gradient = operator_->displacement_gradient(i, *u_);
     // Several threads may have computed it: the first to claim the entry writes it, the others use
     // their own copy.
     if (State unknown = State::unknown; state_[i].compare_exchange_strong(unknown, State::claimed))

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "kerf/solid.h"
+#include "mechanics/solver/debris.h"
 #include "mechanics/solver/ground_contact.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/terms/potential.h"
@@ -93,7 +94,7 @@ void apply_forces(const ExplicitStep& step, const std::vector<Vec3>& force, doub
 
 }  // namespace
 
-StepReport Solid::step_explicit(State& state, double dt, const Environment& environment) const {
+StepReport Solid::step_explicit(State& state, double dt, const Environment& environment) {
   constexpr int most_attempts = 8;
   const SolidDiscretisation& solid = *discretisation_;
   ExplicitStep step{solid, environment, dt, std::vector<double>(size(), 0), {}};
@@ -126,6 +127,8 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& envi
     if (rose && attempt < most_attempts) continue;
     solid.update_plasticity(s, dt);
     state = std::move(s);
+    keep_debris_rigid(solid, environment.fixed, state);
+    set_rotations(state);
     return report;
   }
 }

@@ -2,6 +2,7 @@
 // where Newton's method does not converge.
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
+#include "mechanics/solver/debris.h"
 #include "mechanics/solver/elastic_potential.h"
 #include "mechanics/solver/newton_solver.h"
 #include "mechanics/solver/solver_cache.h"
@@ -52,6 +53,8 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& envi
   const SolidDiscretisation& solid = *discretisation_;
   advance({solid, state, dt, environment, accuracy, *cache_, report}, 0, dt);
   if (solid.is_plastic()) report.energy = solid.elastic_energy(state.displacement, nullptr, solid.relaxation_of(state));
+  keep_debris_rigid(solid, environment.fixed, state);
+  set_rotations(state);
   return report;
 }
 

@@ -5,6 +5,7 @@
 
 #include "geometry/principal_inertia.h"
 #include "kerf/parallel.h"
+#include "mechanics/solver/debris.h"
 #include "mechanics/solver/solid_discretisation.h"
 
 namespace geo {
@@ -59,7 +60,7 @@ std::vector<MovedMass> extend_motion(const SolidDiscretisation& before, const No
     moved.push_back({static_cast<std::uint32_t>(i), before.position[d] + state.displacement[d], state.velocity[d]});
     const Vec3 offset = nodes.position[i] - before.position[d];
     const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
-    const Vec3 displacement = u[d] + before.mls.gradient(d, u) * offset,
+    const Vec3 displacement = u[d] + before.mls.displacement_gradient(d, u) * offset,
                velocity = v[d] + before.mls.gradient(d, v) * offset;
     state.displacement.push_back(displacement), state.velocity.push_back(velocity);
     if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[d]));
@@ -68,10 +69,36 @@ std::vector<MovedMass> extend_motion(const SolidDiscretisation& before, const No
     const std::size_t i = id.index();
     if (i >= old_count || before.position[i] == nodes.position[i]) continue;
     moved.push_back({id.value, before.position[i] + state.displacement[i], state.velocity[i]});
-    state.displacement[i] += before.mls.gradient(i, state.displacement) * (nodes.position[i] - before.position[i]);
+    state.displacement[i] +=
+        before.mls.displacement_gradient(i, state.displacement) * (nodes.position[i] - before.position[i]);
   }
   std::sort(moved.begin(), moved.end(), [](const MovedMass& a, const MovedMass& b) { return a.node < b.node; });
   return moved;
+}
+
+// The rotation of each updated or new node before a cut, at its donor. Empty without motion.
+std::vector<Mat3> rotations_before(const SolidDiscretisation& before, std::size_t old_count,
+                                   std::span<const NodeId> donors, std::span<const NodeId> nodes, const State& state) {
+  if (state.displacement.empty()) return {};
+  std::vector<std::uint32_t> old;
+  for (const NodeId i : nodes) {
+    std::size_t d = i.index();
+    while (d >= old_count) d = donors[d - old_count].index();
+    old.push_back(static_cast<std::uint32_t>(d));
+  }
+  return rotations_at(before.mls, old, state.displacement);
+}
+
+// Sets the rotations of nodes whose neighbours no longer determine them.
+void keep_rotations(const SolidDiscretisation& solid, std::span<const NodeId> updated, const std::vector<Mat3>& before,
+                    State& state) {
+  const bool any = std::any_of(updated.begin(), updated.end(),
+                               [&](NodeId i) { return solid.mls.quality(i.index()) != MomentQuality::good; });
+  if (before.empty() || (!any && state.rotation.empty())) return;
+  state.rotation.resize(solid.size(), Mat3::Identity());
+  for (std::size_t k = 0; k < updated.size(); ++k)
+    state.rotation[updated[k].index()] =
+        solid.mls.quality(updated[k].index()) == MomentQuality::good ? Mat3(Mat3::Identity()) : before[k];
 }
 
 // Gives each component with moved mass the momenta back that it had before.
@@ -124,6 +151,7 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
                                        bool parted) {
   const std::size_t n = nodes.size(), old_count = first_new.index();
   std::vector<MovedMass> moved;
+  const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
   if (!state.displacement.empty()) moved = extend_motion(*this, nodes, old_count, donors, updated, state);
   volume = nodes.volume, spacing = nodes.spacing, position = nodes.position;
   mass.resize(n);
@@ -136,6 +164,8 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
                     else
                       number_new_components(graph, old_count);
                   });
+  keep_rotations(*this, updated, rotations, state);
+  mls.set_rotations(state.rotation);
   if (!moved.empty()) restore_momenta(*this, moved, state);
 }
 

@@ -123,6 +123,8 @@ void Solid::gradient_stencil(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out
   out.push_back({i, stencil.own_gradient});
 }
 
+void Solid::set_rotations(const State& state) { discretisation_->mls.set_rotations(state.rotation); }
+
 double Solid::energy(const std::vector<Vec3>& u) const { return discretisation_->elastic_energy(u, nullptr); }
 
 std::vector<Vec3> Solid::forces(const std::vector<Vec3>& u) const {

@@ -55,6 +55,14 @@ bool has_in_order(const Complex& surface, FaceId f, VertexId a, VertexId b) {
   return false;
 }
 
+// A bound of what number_of_cuts() measures, without the map.
+double longest_way(const MovedBody& moved, const Blade& blade) {
+  const Pose from = blade.motion.at(moved.begin), to = blade.motion.at(moved.end);
+  double of_blade = 0;
+  for (const Vec3& p : blade.points) of_blade = std::max(of_blade, (to * p - from * p).norm());
+  return most_compression * (of_blade + moved.way.longest());
+}
+
 }  // namespace
 
 NodeWay::NodeWay(const std::vector<Vec3>& before, const std::vector<Vec3>& after) {
@@ -65,6 +73,12 @@ NodeWay::NodeWay(const std::vector<Vec3>& before, const std::vector<Vec3>& after
 void NodeWay::add_nodes(std::span<const NodeId> donors) {
   if (way_.empty()) return;
   for (const NodeId d : donors) way_.push_back(Vec3(way_[d.index()]));
+}
+
+double NodeWay::longest() const {
+  double longest = 0;
+  for (const Vec3& way : way_) longest = std::max(longest, way.squaredNorm());
+  return std::sqrt(longest);
 }
 
 std::vector<Vec3> NodeWay::at(const std::vector<Vec3>& after, double fraction) const {
@@ -80,6 +94,9 @@ MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction)
       map_(moved.body, displacement_, gradient_, box_about(blade, pose_)) {}
 
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts) {
+  const auto& spacing = moved.body.nodes.spacing;
+  const double most = blade.limit * *std::min_element(spacing.begin(), spacing.end());
+  if (longest_way(moved, blade) <= most) return 1;
   const MapAt before(moved, blade, 0), after(moved, blade, 1);
   std::vector<double> ways(blade.points.size(), 0);
   parallel_for(ways.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -99,9 +116,7 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
     }
   });
   const double farthest = *std::max_element(ways.begin(), ways.end());
-  const auto& spacing = moved.body.nodes.spacing;
-  const double finest = *std::min_element(spacing.begin(), spacing.end());
-  return static_cast<int>(std::clamp(std::ceil(farthest / (blade.limit * finest)), 1.0, most_cuts));
+  return static_cast<int>(std::clamp(std::ceil(farthest / most), 1.0, most_cuts));
 }
 
 double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, const EdgeFront& from,

@@ -26,6 +26,8 @@ class NodeWay {
   std::vector<Vec3> at(const std::vector<Vec3>& after, double fraction) const;
   /// That of one node, in the step.
   const Vec3& of(NodeId node) const { return way_[node.index()]; }
+  /// The length of the longest.
+  double longest() const;
 
  private:
   std::vector<Vec3> way_;

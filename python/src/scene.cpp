@@ -228,6 +228,9 @@ void bind_scene(py::module_& module) {
   scene.def(py::init(make), py::arg("source"), py::kw_only(), py::arg("set") = py::none(), "See the class.");
   add_fields(scene);
   scene.def_readonly("text", &Scene::text, "The source.")
+      .def_property_readonly(
+          "steps_per_frame", [](const Scene& self) { return self.scene.steps_per_frame(); },
+          "Equal time steps in a frame: the fewest that are at most dt long.")
       .def_readonly("name", &Scene::name, "The path, or 'scene'.")
       .def("__repr__", [](const Scene& self) {
         return "<kerf.Scene " + self.name + " of " + std::to_string(self.scene.bodies.size()) + " bodies and " +

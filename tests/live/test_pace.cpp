@@ -33,7 +33,7 @@ class Frames {
 
 }  // namespace
 
-TEST_CASE("frames that take too long relax accuracy up to its bound, then have fewer steps; both come back") {
+TEST_CASE("frames that take too long relax accuracy up to its bound, then have fewer steps, and both come back") {
   const Effort own{0.01, 4};
   Pacer pacer(period, own, {0.04, 1});
   Frames frames(pacer);

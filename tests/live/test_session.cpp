@@ -251,7 +251,7 @@ TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
     page.take(encode_state(s, {1}));
     auto known = s.topology;
     for (int act = 0; act < 6; ++act) {
-      switch (random() % 5) {
+      switch (random() % 7) {
         case 0:
           session.strokes() > 0 ? session.undo() : void();
           break;
@@ -260,6 +260,15 @@ TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
           break;
         case 2:
           session.obey(Set{uniform(1e4, 5e4), uniform(0, 1), {}, geo::Vec3(uniform(-1, 1), uniform(-1, 1), -3)});
+          break;
+        case 3:  // a page that lost its connection gets the whole state
+          s = shown(session);
+          page = PageModel(), page.take(encode_state(s, {1}));
+          known = s.topology;
+          require_same(page, session.run());
+          break;
+        case 4:
+          if (act > 2) session.reset();
           break;
         default:
           cut(session, random() % 1000000, uniform(-0.3, 0.5), uniform(0.5, 1.3), uniform(-0.3, 0.3));

@@ -185,15 +185,15 @@ struct BlockUpdate {
   }
 
   // Records in `changes` what became of the points in the new block `now`, the index of which is
-  // `number`.
-  void record(std::uint32_t number, const PointBlock& now, std::span<const PointBlock> old,
+  // `number`. `first`: its first point.
+  void record(std::uint32_t number, std::size_t first, const PointBlock& now, std::span<const PointBlock> old,
               PointChanges& changes) const {
+    for (const auto i : stale) changes.is_stale[first + i] = 1;
     if (same_block == none) {
       for (const auto j : now.nodes) changes.node_changed[j] = 1;
       return;
     }
     changes.new_block[same_block] = number;
-    changes.same_points[same_block] = stale.empty();
     for (const auto i : stale)
       for (const PointBlock* block : {&now, &old[same_block]})
         for (auto q = block->entry_begin[i]; q < block->entry_begin[i + 1]; ++q)
@@ -275,8 +275,9 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points)
   });
   points.number_points(body.nodes.size());
   result.node_changed.assign(body.nodes.size(), 0), result.new_block.assign(old.size(), ~0u);
-  result.same_points.assign(old.size(), 0);
-  for (std::uint32_t b = 0; b < updates.size(); ++b) updates[b].record(b, points.blocks[b], old, result);
+  result.is_stale.assign(points.size(), 0);
+  for (std::uint32_t b = 0; b < updates.size(); ++b)
+    updates[b].record(b, points.first_point(b), points.blocks[b], old, result);
   for (std::size_t o = 0; o < old.size(); ++o)
     if (result.new_block[o] == ~0u)
       for (const auto j : old[o].nodes) result.node_changed[j] = 1;

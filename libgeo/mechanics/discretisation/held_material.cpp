@@ -4,7 +4,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "kerf/parallel.h"
@@ -159,9 +161,65 @@ std::vector<HeldMaterial::Anchors> HeldMaterial::anchors_of(const Body& body,
   return all;
 }
 
+// Former replacements of points, before these changed. A point that is not stale keeps its shape
+// gradients where anchors and components are the same: all else that decides them would make it
+// stale.
+class HeldMaterial::Former {
+ public:
+  // `component_before`: per node that there was, its component. `points`: as they are now.
+  Former(std::vector<Replaced>& replaced, const PointChanges& changes, std::span<const std::uint32_t> component_before,
+         const std::vector<std::uint32_t>& component, const MaterialPoints& points)
+      : replaced_(replaced),
+        changes_(changes),
+        component_before_(component_before),
+        component_(component),
+        same_block_(points.blocks.size(), nullptr) {
+    for (Replaced& r : replaced)
+      if (const auto b = changes.new_block[r.block]; b != no_index) same_block_[b] = &r;
+  }
+  // The replacement of a block that is the same now; `first`: its first point. Null: none, or it
+  // has changed.
+  Replaced* same(std::uint32_t number, std::size_t first, const PointBlock& block) const {
+    const auto stale = changes_.is_stale.begin() + static_cast<std::ptrdiff_t>(first);
+    const bool changed = std::any_of(stale, stale + static_cast<std::ptrdiff_t>(block.points.size()),
+                                     [](char is_stale) { return is_stale != 0; });
+    return changed || !has_same_components(block) ? nullptr : same_block_[number];
+  }
+  // Sets sources and stale points of a block that has changed.
+  void find(std::size_t first, const PointBlock& block, Near& near) const {
+    const bool is_known = has_same_components(block);
+    for (std::uint32_t i = 0; i < block.points.size(); ++i) {
+      const std::size_t point = first + i, old = changes_.old_point.empty() ? point : changes_.old_point[point];
+      if (!is_known || changes_.is_stale[point])
+        near.stale.push_back(i);
+      else if (const Replaced* r = replaced_at(old))
+        near.sources[i] = {&r->held, old - r->first_point, nullptr}, near.has_former = true;
+    }
+  }
+
+ private:
+  bool has_same_components(const PointBlock& block) const {
+    return std::all_of(block.nodes.begin(), block.nodes.end(),
+                       [&](auto j) { return j >= component_before_.size() || component_before_[j] == component_[j]; });
+  }
+  const Replaced* replaced_at(std::size_t old_point) const {
+    const auto next = std::upper_bound(replaced_.begin(), replaced_.end(), old_point,
+                                       [](auto point, const Replaced& r) { return point < r.first_point; });
+    if (next == replaced_.begin()) return nullptr;
+    return old_point < next[-1].first_point + next[-1].held.points.size() ? &next[-1] : nullptr;
+  }
+
+  std::span<Replaced> replaced_;  // ascending
+  const PointChanges& changes_;
+  std::span<const std::uint32_t> component_before_;
+  const std::vector<std::uint32_t>& component_;
+  std::vector<Replaced*> same_block_;  // per block now
+};
+
 bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& component, const PointChanges* changes,
                          MaterialPoints& points) {
-  std::vector<Replaced> former = std::move(replaced_);
+  std::vector<Replaced> replaced_before = std::move(replaced_);
+  const std::vector<std::uint32_t> component_before = std::exchange(component_, component);
   replaced_.clear();
   if (boxes_.empty()) return false;
   box_of_node_.assign(body.nodes.size(), no_index);
@@ -172,78 +230,98 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
   const bool same_anchors = anchors == anchors_;
   anchors_ = std::move(anchors);
   if (anchors_.empty()) return false;
-  std::vector<char> kept(points.blocks.size(), 0);
-  for (Replaced& r : former) {
-    const auto block = changes ? changes->new_block[r.block] : r.block;
-    if (!same_anchors || block == no_index || (changes && !changes->same_points[r.block])) continue;
-    PointBlock& plain = points.blocks[block];
-    for (std::size_t i = 0; i < plain.points.size(); ++i)
-      r.held.points[i].volume = plain.points[i].volume,
-      r.held.points[i].unscaled_volume = plain.points[i].unscaled_volume;
-    kept[block] = 1;
-    replaced_.push_back({block, std::exchange(plain, std::move(r.held)), {}});
-  }
+  std::optional<Former> former;
+  if (changes && same_anchors) former.emplace(replaced_before, *changes, component_before, component, points);
   const double reach = largest_reach(body.nodes);
-  std::vector<std::uint32_t> near;
-  for (std::uint32_t b = 0; b < points.blocks.size(); ++b)
-    if (!kept[b] && std::any_of(anchors_.begin(), anchors_.end(), [&](const Anchors& a) {
-          return points.blocks[b].box.grown(reach).meets({boxes_[a.box].lo, boxes_[a.box].hi});
+  std::vector<Near> near;
+  std::size_t first = 0, next = 0;
+  for (std::uint32_t b = 0; b < points.blocks.size(); ++b, first = next) {
+    PointBlock& block = points.blocks[b];
+    next = first + block.points.size();
+    if (std::none_of(anchors_.begin(), anchors_.end(), [&](const Anchors& a) {
+          return block.box.grown(reach).meets({boxes_[a.box].lo, boxes_[a.box].hi});
         }))
-      near.push_back(b);
+      continue;
+    if (Replaced* r = former ? former->same(b, first, block) : nullptr) {
+      for (std::size_t i = 0; i < block.points.size(); ++i)
+        r->held.points[i].volume = block.points[i].volume,
+        r->held.points[i].unscaled_volume = block.points[i].unscaled_volume;
+      replaced_.push_back({b, std::exchange(block, std::move(r->held)), {}, first});
+      continue;
+    }
+    Near& n = near.emplace_back();
+    n.block = b, n.first_point = first;
+    for (std::size_t i = 0; i < block.points.size(); ++i) n.sources.push_back({&block, i, nullptr});
+    if (former)
+      former->find(first, block, n);
+    else
+      n.stale.resize(block.points.size()), std::iota(n.stale.begin(), n.stale.end(), 0);
+  }
   replace(body, component, near, points);
   std::sort(replaced_.begin(), replaced_.end(), [](const auto& a, const auto& b) { return a.block < b.block; });
   return !replaced_.empty();
 }
 
-// Lines of sight are those of the plain basis, which the blocks know.
-void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& component,
-                           std::span<const std::uint32_t> blocks, MaterialPoints& points) {
+// A stale point that may be near enough to a box, and its shape gradients.
+struct HeldMaterial::Candidate {
+  std::uint32_t block, point;
+  MaterialPoint copy;
+  ShapeGradients plain;
+  std::optional<ShapeGradients> held;
+};
+
+std::vector<HeldMaterial::Candidate> HeldMaterial::candidates_in(const Near& near, const Body& body,
+                                                                 const MaterialPoints& points) const {
   const double reach = largest_reach(body.nodes);
-  struct Candidate {
-    std::uint32_t block, point;
-    MaterialPoint copy;
-    ShapeGradients plain;
-    std::optional<ShapeGradients> held;
-  };
   std::vector<Candidate> candidates;
-  for (const auto b : blocks)
-    for (std::uint32_t i = 0; i < points.blocks[b].points.size(); ++i) {
-      const MaterialPoint& p = points.blocks[b].points[i];
-      if (p.quality == MomentQuality::singular) continue;
-      if (std::any_of(anchors_.begin(), anchors_.end(), [&](const Anchors& a) {
-            return (p.position - nearest_in(boxes_[a.box], p.position)).norm() < reach;
-          }))
-        candidates.push_back({b, i, p, {}, {}}), candidates.back().copy.influence_radius = 0;
-    }
+  for (const auto i : near.stale) {
+    const MaterialPoint& p = points.blocks[near.block].points[i];
+    if (p.quality != MomentQuality::singular && std::any_of(anchors_.begin(), anchors_.end(), [&](const Anchors& a) {
+          return (p.position - nearest_in(boxes_[a.box], p.position)).norm() < reach;
+        }))
+      candidates.push_back({near.block, i, p, {}, {}}), candidates.back().copy.influence_radius = 0;
+  }
+  return candidates;
+}
+
+// Lines of sight are those of the plain basis, which the blocks know.
+void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const Near> blocks,
+                           MaterialPoints& points) {
+  std::vector<Candidate> candidates;
+  std::vector<std::size_t> first(1, 0);  // per block its first candidate; one more at the end
+  for (const Near& near : blocks) {
+    auto of_block = candidates_in(near, body, points);
+    candidates.insert(candidates.end(), std::make_move_iterator(of_block.begin()),
+                      std::make_move_iterator(of_block.end()));
+    first.push_back(candidates.size());
+  }
   std::vector<SupportTask> tasks;
   for (Candidate& c : candidates) tasks.push_back({&c.copy, &c.plain, &points.blocks[c.block], c.point, true});
-  if (tasks.empty()) return;
   const VisibilityChanges no_changes({}, {}, body.nodes.size());
-  compute_supports(body, std::move(tasks), nullptr, &no_changes);
+  if (!tasks.empty()) compute_supports(body, std::move(tasks), nullptr, &no_changes);
   const Shapes shapes{body, box_of_node_, boxes_, anchors_, component};
   parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       candidates[k].held = shapes.at(candidates[k].copy.position, candidates[k].plain);
   });
-  std::erase_if(candidates, [](const Candidate& c) { return !c.held; });
-  std::vector<std::pair<std::size_t, std::size_t>> runs;  // of candidates of one block
-  for (std::size_t begin = 0, end; begin < candidates.size(); begin = end) {
-    for (end = begin; end < candidates.size() && candidates[end].block == candidates[begin].block;) ++end;
-    runs.push_back({begin, end});
-  }
-  const std::size_t first = replaced_.size();
-  replaced_.resize(first + runs.size());
-  parallel_for(runs.size(), 1, [&](std::size_t from, std::size_t to) {
-    for (std::size_t r = from; r < to; ++r) {
-      const auto [begin, end] = runs[r];
-      PointBlock& block = points.blocks[candidates[begin].block];
-      std::vector<PointBlock::Source> sources;
-      for (std::size_t i = 0; i < block.points.size(); ++i) sources.push_back({&block, i, nullptr});
-      for (std::size_t k = begin; k < end; ++k) sources[candidates[k].point] = {nullptr, 0, &*candidates[k].held};
-      PointBlock held(block.points, sources);
-      replaced_[first + r] = {candidates[begin].block, std::exchange(block, std::move(held)), {}};
+  std::vector<PointBlock> held(blocks.size());
+  std::vector<char> is_replaced(blocks.size(), 0);
+  parallel_for(blocks.size(), 1, [&](std::size_t from, std::size_t to) {
+    for (std::size_t b = from; b < to; ++b) {
+      PointBlock& block = points.blocks[blocks[b].block];
+      auto sources = blocks[b].sources;
+      is_replaced[b] = blocks[b].has_former;
+      for (std::size_t k = first[b]; k < first[b + 1]; ++k)
+        if (candidates[k].held) sources[candidates[k].point].shape = &*candidates[k].held, is_replaced[b] = 1;
+      if (is_replaced[b]) held[b] = PointBlock(block.points, sources);
     }
   });
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (is_replaced[b])
+      replaced_.push_back({blocks[b].block,
+                           std::exchange(points.blocks[blocks[b].block], std::move(held[b])),
+                           {},
+                           blocks[b].first_point});
 }
 
 }  // namespace geo

@@ -44,15 +44,29 @@ class HeldMaterial {
   struct Replaced {
     std::uint32_t block;
     PointBlock plain, held;
+    std::size_t first_point = 0;
   };
   struct Shapes;
 
+  class Former;
+  // A block near a box: the source of each point, and the points to compute anew, ascending.
+  struct Near {
+    std::uint32_t block = 0;
+    std::size_t first_point = 0;
+    std::vector<PointBlock::Source> sources;
+    bool has_former = false;  // some sources are what replaced points before
+    std::vector<std::uint32_t> stale;
+  };
+  struct Candidate;
+
   std::vector<Anchors> anchors_of(const Body& body, const std::vector<std::uint32_t>& component) const;
-  void replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const std::uint32_t> blocks,
+  std::vector<Candidate> candidates_in(const Near& near, const Body& body, const MaterialPoints& points) const;
+  void replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const Near> blocks,
                MaterialPoints& points);
 
   std::vector<HeldBox> boxes_;
   std::vector<std::uint32_t> box_of_node_;  // per node: the first box that holds it, or ~0u
+  std::vector<std::uint32_t> component_;    // per node, as of the last apply()
   std::vector<Anchors> anchors_;            // by box, then by component
   std::vector<Replaced> replaced_;          // ascending; between restore() and apply() `plain` is empty
 };

@@ -92,8 +92,8 @@ struct PointBlock {
 struct PointChanges {
   std::vector<std::uint32_t> old_point;  ///< per point now: its old index; empty if points are the same
   std::vector<std::uint32_t> new_block;  ///< per old block: the index of the block that has the same points now
-  std::vector<char> same_points;   ///< per old block: 1 if it has the same points with the same shape gradients now
-  std::vector<char> node_changed;  ///< per node: 1 if points or shape gradients with it, or their blocks, changed
+  std::vector<char> is_stale;            ///< per point now: 1 if it was computed anew
+  std::vector<char> node_changed;        ///< per node: 1 if points or shape gradients with it, or their blocks, changed
 };
 
 /// All material points of a body.

@@ -15,12 +15,12 @@ namespace geo {
 
 /// Where components of G and pieces of material do not correspond.
 struct ConnectivityMismatch {
-  std::vector<SurfaceVertexId> empty_pieces;      ///< a surface vertex of each piece without a node
-  std::vector<NodePair> disconnected;             ///< pairs of nodes of one piece in two components of G
-  std::map<std::int32_t, NodeId> representative;  ///< by label: a node of each piece visited; invalid
-                                                  ///< where the piece has none yet
-  std::map<std::int32_t, std::set<std::int32_t>> parts;  ///< by label, of a piece that was parted: itself and the other
-                                                         ///< parts; set by note_parts()
+  std::vector<SurfaceVertexId> empty_pieces;             ///< a surface vertex of each piece without a node
+  std::vector<NodePair> disconnected;                    ///< pairs of nodes of one piece in two components of G
+  std::map<std::int32_t, NodeId> representative;         ///< by label: a node of each piece visited; invalid
+                                                         ///< where the piece has none yet
+  std::map<std::int32_t, std::set<std::int32_t>> parts;  ///< by label, of a piece that was parted:
+                                                         ///< itself and the other parts; by note_parts()
   /// Do components and pieces correspond?
   bool none() const { return empty_pieces.empty() && disconnected.empty(); }
 };
@@ -60,8 +60,8 @@ using GraphUpdater = std::function<void(NodeId first_new, std::span<const NodePa
 
 /// § 6.4, passages too narrow for the sampling: adds edges, then nodes, until no piece is empty and
 /// all pairs are connected. Works in rounds of decreasing spacing; `update` is called once a round.
-/// Afterwards mismatch.representative has a node of each piece visited. `fresh`: crack faces of this
-/// step, ascending.
+/// Afterwards mismatch.representative has a node of each piece visited. `fresh`: crack faces of
+/// this step, ascending.
 void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
                          std::span<const FaceId> fresh = {});
 

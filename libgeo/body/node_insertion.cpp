@@ -97,8 +97,8 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
     if (std::any_of(near.begin(), near.end(),
                     [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
       continue;
-    // The donor is the nearest node that sees the new one; else, in a fresh sliver, the nearest that
-    // saw it before this step; else the nearest of all. Another may have moved far away.
+    // The donor is the nearest node that sees the new one; else, in a fresh sliver, the nearest
+    // that saw it before this step; else the nearest of all. Another may have moved far away.
     const auto nearest =
         // 24 candidates for at most twelve visible nodes. Fewer are found where the crack hides
         // more than half.

@@ -24,8 +24,8 @@ class SurfaceWeights {
   /// rebuild(). Returns their vertices, ascending.
   std::vector<std::uint32_t> apply_delta(const Body& body, const Solid& solid, const BodyDelta& delta);
 
-  /// Takes over the rotations of debris (State::rotation) from the solid, after a step of it. Returns
-  /// whether there is any.
+  /// Takes over the rotations of debris (State::rotation) from the solid, after a step of it.
+  /// Returns whether there is any.
   bool set_rotations(const Solid& solid);
 
   /// Number of surface vertices.
@@ -40,8 +40,8 @@ class SurfaceWeights {
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
   /// The nodes' values interpolated at surface vertex v; zero if no node carries it.
   Vec3 interpolate(std::size_t v, const std::vector<Vec3>& values) const { return weighted_sum(stencils_[v], values); }
-  /// What Eq. 1 adds to the displacement of surface vertex v by rotations of debris; it is constant
-  /// in a step.
+  /// The part of the displacement of surface vertex v that rotations of debris add in Eq. 1. It is
+  /// constant in a step.
   Vec3 rotated(std::size_t v) const { return rotated_.empty() ? Vec3(Vec3::Zero()) : rotated_[v]; }
   /// interpolate() for many vertices, in parallel; equal to the bit.
   std::vector<Vec3> interpolate(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const;

@@ -34,7 +34,7 @@ class NodalGradientOperator {
   bool has_rotations() const { return !undetermined_.empty(); }
   /// ∇u at node i, as far as its neighbours determine it: linear in u.
   Mat3 gradient(std::size_t i, const std::vector<Vec3>& u) const;
-  /// What displacements have beyond gradient(): (R_i − 1) (1 − Σ_j x_ij g_ijᵀ). Zero where the rank
+  /// The part of ∇u that gradient() leaves out: (R_i − 1) (1 − Σ_j x_ij g_ijᵀ). Zero where the rank
   /// is full.
   Mat3 undetermined(std::size_t i) const { return undetermined_.empty() ? Mat3(Mat3::Zero()) : undetermined_[i]; }
   /// ∇u at node i for displacements u: both parts.
@@ -65,9 +65,9 @@ class NodalGradientOperator {
   std::vector<Mat3> undetermined_;  // per node; empty: zero
 };
 
-/// Displacement gradients at nodes, computed at first use: for queries that concern few nodes of a large body.
-/// Threads may read the same object at the same time. Keeps references to the operator and the
-/// displacements.
+/// Displacement gradients at nodes, computed at first use: for queries that concern few nodes of a
+/// large body. Threads may read the same object at the same time. Keeps references to the operator
+/// and the displacements.
 class LazyNodalGradients {
  public:
   /// Computes nothing yet.

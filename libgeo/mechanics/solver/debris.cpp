@@ -10,8 +10,8 @@
 namespace geo {
 namespace {
 
-// Share of the last rotation in a fit, of the trace of Σ w (X_j − X_i) (X_j − X_i)ᵀ. It decides about
-// directions in which nodes extend less than a thirtieth of their extent.
+// Share of the last rotation in a fit, of the trace of Σ w (X_j − X_i) (X_j − X_i)ᵀ. It decides
+// about directions in which nodes extend less than a thirtieth of their extent.
 constexpr double memory = 1e-3;
 
 // The rotation nearest to `fit`, whose trace at rest is `size`.
@@ -86,9 +86,8 @@ void make_rigid(const SolidDiscretisation& solid, const RigidBody& body, State& 
     inertia += solid.mass[i] * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
   }
   const PrincipalInertia principal(inertia);
-  const Vec3 spin =
-      turns ? Vec3(principal.axes * principal.angular_velocity(angular, rounding * principal.moments[2]))
-            : Vec3(Vec3::Zero());
+  const Vec3 spin = turns ? Vec3(principal.axes * principal.angular_velocity(angular, rounding * principal.moments[2]))
+                          : Vec3(Vec3::Zero());
   for (const auto i : body.nodes) {
     state.rotation[i] = rotation;
     const Vec3 arm = rotation * (solid.position[i] - rest);

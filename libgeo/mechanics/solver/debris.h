@@ -9,8 +9,8 @@
 
 namespace geo {
 
-/// Makes components rigid whose nodes no material point joins: each gets the rigid motion nearest to
-/// that of its nodes, with their momenta. If some of its nodes are fixed, these alone decide.
+/// Makes components rigid whose nodes no material point joins: each gets the rigid motion nearest
+/// to that of its nodes, with their momenta. If some of its nodes are fixed, these alone decide.
 /// Updates State::rotation of all nodes without a full gradient. `fixed`: per node, or empty.
 void keep_debris_rigid(const SolidDiscretisation& solid, const std::vector<std::uint8_t>& fixed, State& state);
 

@@ -61,8 +61,8 @@ void simulation_scenes(bool json, Figures& figures) {
       crossings += geo::count_crossings(run.surface());
     }
     if (!json)
-      std::fprintf(stderr, "%s: %d frames, mechanics %.2f s, contact %.2f s\n", c.name.c_str(), scene.frames,
-                   total.mechanics_seconds, total.contact_seconds);
+      std::fprintf(stderr, "%s: %d frames, %.1f a second; mechanics %.2f s, contact %.2f s\n", c.name.c_str(),
+                   scene.frames, scene.frames / seconds, total.mechanics_seconds, total.contact_seconds);
     figures["frames_per_second_" + c.name] = scene.frames / seconds;
     figures["crossings_" + c.name] = double(crossings);
     figures["refused_" + c.name] = double(total.refused);

@@ -19,7 +19,7 @@ namespace {
 
 // Limits of effort. None changes whether something crosses; they bound what one step may cost.
 constexpr int max_rounds = 8;          // of motion and reduction of the tracking error; more: nearer to the targets
-constexpr int max_projections = 240;   // in a round
+constexpr int max_projections = 240;   // in all rounds; what is left takes the fallback
 constexpr int patience = 6;            // projections without progress, after which pairs become rigid
 constexpr int max_growths = 20;        // of the fallback's set of vertices
 constexpr int growths_to_follow = 10;  // after which all vertices follow the field
@@ -116,7 +116,7 @@ class CrossingFreeMotion {
     std::size_t fewest = ~std::size_t(0);  // uncertified pairs at the last progress
     int last_progress = 0;                 // the iteration of it
     bool certified = false;
-    for (int i = 0; i < max_projections; ++i) {
+    for (int i = 0; projections_ < max_projections; ++i, ++projections_) {
       const auto uncertified = certify.uncertified_pairs(near_.pairs(), changed, rigid);
       certified = uncertified.empty();
       if (certified) break;
@@ -212,6 +212,7 @@ class CrossingFreeMotion {
   RepresentativeSurface surface_;
   std::vector<Vec3> at_;            // per vertex; current for representatives only
   double edge_ = 0, rounding_ = 0;  // model units
+  int projections_ = 0;             // so far
 };
 
 }  // namespace

@@ -47,7 +47,6 @@ FrontAnchor::FrontAnchor(const Complex& surface, const MapAt& start, const Blade
 }
 
 Vec3 FrontAnchor::corrected(double at, const Vec3& place, double spacing) const {
-  if (at_.empty()) return place;
   const auto k = static_cast<std::size_t>(std::lower_bound(at_.begin(), at_.end(), at) - at_.begin());
   const std::size_t after = std::min(k, at_.size() - 1), before = k > 0 && k < at_.size() ? k - 1 : after;
   const double t = before < after ? (at - at_[before]) / (at_[after] - at_[before]) : 1;

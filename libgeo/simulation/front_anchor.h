@@ -17,8 +17,6 @@ namespace geo {
 /// two spacings from the front.
 class FrontAnchor {
  public:
-  /// Corrects nothing.
-  FrontAnchor() = default;
   /// For a front that an edge has left. `start`: the map at the time when it got there.
   FrontAnchor(const Complex& surface, const MapAt& start, const Blade& blade, const EdgeFront& edge);
   /// The place in the material of an edge parameter, corrected. `place`: by the map at a later

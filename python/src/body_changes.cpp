@@ -131,7 +131,7 @@ void bind_delta(py::module_& module) {
           "Nodes from here on are new.")
       .def_property_readonly(
           "donors", [](const BodyDelta& d) { return ids(d.delta.donors); },
-          "For each new node: the node that gave half of its volume, uint32.")
+          "For each new node: the node whose motion and material it takes, uint32.")
       .def_property_readonly(
           "moved_nodes", [](const BodyDelta& d) { return ids(d.delta.moved_nodes); },
           "Old nodes moved off a crack face, uint32.")

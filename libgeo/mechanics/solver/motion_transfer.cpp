@@ -32,32 +32,32 @@ struct RigidVelocity {
 // about its centre of mass. About a fixed point the angular momentum may change, as mass is
 // redistributed: were that corrected, a component that only travels would begin to turn. A
 // component on a line has no inertia about it and gets no spin about it.
+// A component that took mass from another, or gave it, keeps its mean velocity.
 RigidVelocity correction(const Momenta& before, const Momenta& after) {
   constexpr double rounding = 1e-9;  // of the largest moment of inertia
-  const Vec3 c = after.moment / after.mass, linear = before.linear - after.linear;
-  const Vec3 angular =
-      before.angular - (before.moment / before.mass).cross(before.linear) - after.angular + c.cross(after.linear);
+  const double share = after.mass / before.mass;
+  const Vec3 c = after.moment / after.mass, linear = share * before.linear - after.linear;
+  const Vec3 angular = share * (before.angular - (before.moment / before.mass).cross(before.linear)) - after.angular +
+                       c.cross(after.linear);
   const PrincipalInertia inertia(after.inertia - after.mass * (c.squaredNorm() * Mat3::Identity() - c * c.transpose()));
   const Vec3 spin = inertia.angular_velocity(angular, rounding * inertia.moments[2]);
   return {c, linear / after.mass, inertia.axes * spin};
 }
 
-// A node whose mass is new or has moved: where that mass was, and its velocity. A new node's mass
-// was its donor's.
-struct MovedMass {
+// A node that has moved: where it was, and its velocity.
+struct MovedNode {
   std::uint32_t node;
   Vec3 position, velocity;
 };
 
 // Extends the motion to new nodes by their donors' affine motion and moves that of moved nodes with
-// them, by the gradients before the cut. Returns the masses that moved, ascending by node.
-std::vector<MovedMass> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes, std::size_t old_count,
+// them, by the gradients before the cut. Returns the nodes that moved, ascending.
+std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes, std::size_t old_count,
                                      std::span<const NodeId> donors, std::span<const NodeId> updated, State& state) {
-  std::vector<MovedMass> moved;
+  std::vector<MovedNode> moved;
   for (std::size_t i = old_count; i < nodes.size(); ++i) {
     std::size_t d = donors[i - old_count].index();
     while (d >= old_count) d = donors[d - old_count].index();
-    moved.push_back({static_cast<std::uint32_t>(i), before.position[d] + state.displacement[d], state.velocity[d]});
     const Vec3 offset = nodes.position[i] - before.position[d];
     const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
     const Vec3 displacement = u[d] + before.mls.displacement_gradient(d, u) * offset,
@@ -72,7 +72,7 @@ std::vector<MovedMass> extend_motion(const SolidDiscretisation& before, const No
     state.displacement[i] +=
         before.mls.displacement_gradient(i, state.displacement) * (nodes.position[i] - before.position[i]);
   }
-  std::sort(moved.begin(), moved.end(), [](const MovedMass& a, const MovedMass& b) { return a.node < b.node; });
+  std::sort(moved.begin(), moved.end(), [](const MovedNode& a, const MovedNode& b) { return a.node < b.node; });
   return moved;
 }
 
@@ -101,31 +101,31 @@ void keep_rotations(const SolidDiscretisation& solid, std::span<const NodeId> up
         solid.mls.quality(updated[k].index()) == MomentQuality::good ? Mat3(Mat3::Identity()) : before[k];
 }
 
-// Gives each component with moved mass the momenta back that it had before.
-void restore_momenta(const SolidDiscretisation& solid, const std::vector<MovedMass>& moved, State& state) {
+// Gives each component with new or moved mass the momenta back that it had before. `mass`: per node
+// before the cut.
+void restore_momenta(const SolidDiscretisation& solid, const std::vector<double>& mass,
+                     const std::vector<MovedNode>& moved, State& state) {
   const std::vector<std::uint32_t>& component = solid.component;
-  std::vector<char> has_moved(solid.components, 0);
-  for (const MovedMass& m : moved) has_moved[component[m.node]] = 1;
+  std::vector<char> is_stale(solid.components, 0);
+  for (const MovedNode& m : moved) is_stale[component[m.node]] = 1;
+  for (std::size_t i = 0; i < solid.size(); ++i)
+    if (i >= mass.size() || solid.mass[i] != mass[i]) is_stale[component[i]] = 1;
   std::vector<Momenta> before(solid.components), after(solid.components);
-  std::vector<char> differs(solid.components, 0);  // up to the first moved mass of a component, both sums are one
   auto next = moved.begin();
   for (std::size_t i = 0; i < solid.size(); ++i) {
     const auto c = component[i];
-    if (!has_moved[c]) continue;
-    const bool moves = next != moved.end() && next->node == i;
-    if (moves && !std::exchange(differs[c], 1)) before[c] = after[c];
+    if (!is_stale[c]) continue;
     const Vec3 x = solid.position[i] + state.displacement[i];
     after[c].add(solid.mass[i], x, state.velocity[i]);
-    if (moves)
-      before[c].add(solid.mass[i], next->position, next->velocity), ++next;
-    else if (differs[c])
-      before[c].add(solid.mass[i], x, state.velocity[i]);
+    const bool moves = next != moved.end() && next->node == i;
+    if (i < mass.size()) before[c].add(mass[i], moves ? next->position : x, moves ? next->velocity : state.velocity[i]);
+    if (moves) ++next;
   }
   std::vector<RigidVelocity> corrections(solid.components);
   for (std::uint32_t c = 0; c < solid.components; ++c)
-    if (has_moved[c]) corrections[c] = correction(before[c], after[c]);
+    if (is_stale[c] && before[c].mass > 0) corrections[c] = correction(before[c], after[c]);
   for (std::size_t i = 0; i < solid.size(); ++i)
-    if (const auto c = component[i]; has_moved[c])
+    if (const auto c = component[i]; is_stale[c] && before[c].mass > 0)
       state.velocity[i] += corrections[c].at(solid.position[i] + state.displacement[i]);
 }
 
@@ -150,7 +150,8 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
                                        std::span<const NodeId> donors, std::span<const NodeId> updated, State& state,
                                        bool parted) {
   const std::size_t n = nodes.size(), old_count = first_new.index();
-  std::vector<MovedMass> moved;
+  std::vector<MovedNode> moved;
+  const std::vector<double> mass_before = mass;
   const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
   if (!state.displacement.empty()) moved = extend_motion(*this, nodes, old_count, donors, updated, state);
   volume = nodes.volume, spacing = nodes.spacing, position = nodes.position;
@@ -166,7 +167,7 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
                   });
   keep_rotations(*this, updated, rotations, state);
   mls.set_rotations(state.rotation);
-  if (!moved.empty()) restore_momenta(*this, moved, state);
+  if (!state.displacement.empty()) restore_momenta(*this, mass_before, moved, state);
 }
 
 }  // namespace geo

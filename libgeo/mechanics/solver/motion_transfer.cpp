@@ -5,6 +5,7 @@
 
 #include "geometry/principal_inertia.h"
 #include "kerf/parallel.h"
+#include "mechanics/discretisation/kernel.h"
 #include "mechanics/solver/debris.h"
 #include "mechanics/solver/solid_discretisation.h"
 
@@ -50,7 +51,31 @@ struct MovedNode {
   Vec3 position, velocity;
 };
 
-// Extends the motion to new nodes by their donors' affine motion and moves that of moved nodes with
+// Displacement and velocity before a cut at a position in the material: those of node d and its
+// neighbours, each extended by its gradient, averaged by their kernels. One node's gradient alone
+// changes the strain energy of a bent body.
+std::pair<Vec3, Vec3> motion_at(const Vec3& x, std::size_t d, const SolidDiscretisation& before,
+                                const std::vector<double>& radius, const State& state) {
+  const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
+  const auto extended = [&](std::size_t j) {
+    const Vec3 offset = x - before.position[j];
+    return std::pair<Vec3, Vec3>(u[j] + before.mls.displacement_gradient(j, u) * offset,
+                                 v[j] + before.mls.gradient(j, v) * offset);
+  };
+  double sum = 0;
+  Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero();
+  const auto add = [&](std::size_t j) {
+    const double w = kernel((x - before.position[j]).norm(), radius[j]);
+    if (!(w > 0)) return;
+    const auto [own_displacement, own_velocity] = extended(j);
+    sum += w, displacement += w * own_displacement, velocity += w * own_velocity;
+  };
+  add(d);
+  for (const auto j : before.mls[d].neighbors) add(j);
+  return sum > 0 ? std::pair<Vec3, Vec3>(displacement / sum, velocity / sum) : extended(d);
+}
+
+// Extends the motion to new nodes from their donors' neighbourhoods and moves that of moved nodes with
 // them, by the gradients before the cut. Returns the nodes that moved, ascending.
 std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes, std::size_t old_count,
                                      std::span<const NodeId> donors, std::span<const NodeId> updated, State& state) {
@@ -58,10 +83,7 @@ std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const No
   for (std::size_t i = old_count; i < nodes.size(); ++i) {
     std::size_t d = donors[i - old_count].index();
     while (d >= old_count) d = donors[d - old_count].index();
-    const Vec3 offset = nodes.position[i] - before.position[d];
-    const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
-    const Vec3 displacement = u[d] + before.mls.displacement_gradient(d, u) * offset,
-               velocity = v[d] + before.mls.gradient(d, v) * offset;
+    const auto [displacement, velocity] = motion_at(nodes.position[i], d, before, nodes.radius, state);
     state.displacement.push_back(displacement), state.velocity.push_back(velocity);
     if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[d]));
   }

@@ -1,6 +1,7 @@
 // Bodies that stay in step with their surface: by hand on a block, at random on a pumpkin.
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <numeric>
 
 #include "body/locate.h"
@@ -147,6 +148,31 @@ TEST_CASE("Random cuts keep a pumpkin's body in step", "[body]") {
     CHECK(check_body(body).first_problem == "");
     CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
   });
+}
+
+TEST_CASE("New nodes along a cut of many steps own about as much as the nodes around them", "[body]") {
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  CAPTURE(seed);
+  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
+  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, {.spacing = 0.05, .levels = 3, .seed = seed}));
+  const std::size_t before = body.nodes.size();
+  const double volume = total(body.nodes.volume);
+  const auto least_share = [&](std::size_t first) {
+    double least = 1;
+    for (std::size_t i = first; i < body.nodes.size(); ++i)
+      least = std::min(least, body.nodes.volume[i] / std::pow(body.nodes.spacing[i], 3));
+    return least;
+  };
+  const double least_before = least_share(0);
+  auto front = begin_front(std::vector<Vec3>{{0.47, -0.5, -0.5}, {0.48, 1.5, -0.5}}, false, 1);
+  for (int s = 1; s <= 40; ++s) {
+    const double z = -0.5 + 0.05 * s;
+    split(body, front, {{0.47, -0.5, z}, {0.48, 1.5, z}});
+  }
+  REQUIRE(body.nodes.size() > before + 100);
+  CHECK(least_share(0) > 0.25 * least_before);
+  CHECK(least_share(before) > 0.25 * least_before);
+  CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
 }
 
 TEST_CASE("Nodes whose neighbours do not span space are debris", "[body]") {

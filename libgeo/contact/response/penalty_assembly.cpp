@@ -1,5 +1,5 @@
 // Candidates of the free motion become contacts with depth = separation − n · (a − b), at most
-// constraints_per_node_pair for two nodes. Stiffness: 4 E / (ρ h²) + 1 / dt² per effective mass.
+// constraints_per_node_pair for two nodes. Stiffness: 2 E / (ρ h²) + 1 / dt² per effective mass.
 #include "contact/response/penalty_assembly.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ constexpr double candidate_distance = 0.05;
 // would throw the walls apart.
 constexpr double recovery = 0.5;
 // Stiffness over that of the material between two nodes, E / (ρ h²) per mass. A contact is deep by
-// about a quarter of what the material between two nodes is compressed.
-constexpr double relative_stiffness = 4;
+// about half of what the material between two nodes is compressed.
+constexpr double relative_stiffness = 2;
 
 class PenaltyAssembly {
  public:

@@ -96,7 +96,7 @@ class Running {
  public:
   explicit Running(const sim::Setup& s)
       : session_(s, {}), server_({"127.0.0.1", 0, "token", "", "bench"}, inbox_), loop_([this] {
-          live::run_loop(session_, inbox_, server_, {"bench", 0, [this] { return !stops_.load(); }});
+          live::run_loop(session_, inbox_, server_, {"bench", 0, [this] { return !stops_.load(); }, false});
         }) {}
   ~Running() {
     stops_ = true;

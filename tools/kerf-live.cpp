@@ -57,7 +57,7 @@ void serve(const Command& command, const tool::Tool& t) {
     t.say(opened ? "kerf-live: opened in the browser; Ctrl-C ends it"
                  : "kerf-live: open this address in a browser; Ctrl-C ends it");
     const auto keep_on = [&] { return progress("", 1, 1); };
-    live::run_loop(session, inbox, server, {name, command.linger, keep_on});
+    live::run_loop(session, inbox, server, {name, command.linger, keep_on, !live::is_scene(command.scene)});
   }
   if (command.record.empty()) return;
   const std::string folder = fs::absolute(command.record).parent_path().string();

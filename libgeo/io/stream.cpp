@@ -108,6 +108,7 @@ void discard_temporary_outputs() {
 std::uint64_t fingerprint(std::string_view bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 std::string read_all(const std::string& path) {
+  if (path.empty()) throw MissingInputError("the name of an input file is empty; give a file, or - for standard input");
   int fd = 0;
   std::string bytes;
   if (path != "-") {

@@ -32,8 +32,10 @@ class TomlTable {
   }
   /// Throws InputError at the position of the table.
   [[noreturn]] void fail(const std::string& what) const { fail(table_, what); }
-  /// Throws InputError for a missing key; where another key is similar, for that one as misspelt.
+  /// Throws InputError for a missing key, or one with an empty text; where another key is similar,
+  /// for that one as misspelt.
   [[noreturn]] void missing(const std::string& key, const std::string& what) const {
+    if (const auto* node = table_.get(key)) fail(*node, "'" + path_ + key + "' is empty: " + what);
     for (const auto& [other, node] : table_)
       if (const auto meant = did_you_mean(other.str(), {key}); !meant.empty())
         fail(node, "unknown key '" + path_ + shown(other.str()) + "'" + meant);

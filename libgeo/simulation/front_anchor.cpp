@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "kerf/parallel.h"
+
 namespace geo {
 namespace {
 
@@ -34,16 +36,17 @@ std::vector<Vec3> sheet_normals(const Complex& surface, const FrontState& front)
 FrontAnchor::FrontAnchor(const Complex& surface, const MapAt& start, const Blade& blade, const EdgeFront& edge)
     : at_(edge.at), change_(edge.at.size(), Vec3::Zero()) {
   const std::vector<Vec3> normals = sheet_normals(surface, edge.front);
-  InverseDeformation::VertexCache memory;
-  for (std::size_t i = 0; i < at_.size(); ++i) {
-    const FrontState::Point& point = edge.front.points[i];
-    place_.push_back(point.position);
-    if (!point.id.valid() || normals[i].isZero(0)) continue;
-    const auto mapped = start.map().to_material(start.pose() * place_on(blade, at_[i]), memory, &point.position);
-    if (!mapped.in_support) continue;
-    const Vec3 normal = normals[i].normalized();
-    change_[i] = normal.dot(mapped.position - point.position) * normal;
-  }
+  for (std::size_t i = 0; i < at_.size(); ++i) place_.push_back(edge.front.points[i].position);
+  parallel_for(at_.size(), 8, [&](std::size_t begin, std::size_t end) {
+    InverseDeformation::VertexCache memory;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!edge.front.points[i].id.valid() || normals[i].isZero(0)) continue;
+      const auto mapped = start.map().to_material(start.pose() * place_on(blade, at_[i]), memory, &place_[i]);
+      if (!mapped.in_support) continue;
+      const Vec3 normal = normals[i].normalized();
+      change_[i] = normal.dot(mapped.position - place_[i]) * normal;
+    }
+  });
 }
 
 Vec3 FrontAnchor::corrected(double at, const Vec3& place, double spacing) const {

@@ -266,7 +266,9 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
   std::vector<EdgeFront>& fronts = state.fronts[b];
   auto runs = map_edge(moved, b, double(k) / cuts);
   std::optional<MapAt> start, half;
-  if (!runs.empty()) start.emplace(moved, blade, (k - 1.0) / cuts), half.emplace(moved, blade, (k - 0.5) / cuts);
+  if (!runs.empty())
+    parallel_invoke([&] { start.emplace(moved, blade, (k - 1.0) / cuts); },
+                    [&] { half.emplace(moved, blade, (k - 0.5) / cuts); });
   stats.front_seconds += watch.lap();
   // The map belongs to the body before the first split: all runs ask it before any of them cuts.
   std::vector<Advance> advances;

@@ -13,9 +13,9 @@
 
 #include "bench.h"
 #include "client.h"
-#include "kerf/files.h"
 #include "kerf/mesh.h"
 #include "live/loop.h"
+#include "sample_scenes.h"
 
 namespace bench {
 namespace {
@@ -26,15 +26,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 // A scene of samples/scenes without its blades.
 sim::Setup scene(const std::string& name, double rate) {
-  const std::string folder = KERF_SCENES;
   sim::Setup s;
-  s.scene = geo::parse_scene(geo::read_all(folder + "/" + name + ".toml"), name, {}, folder);
-  std::vector<geo::TriangleMesh> meshes;
-  if (name == "apple") meshes.push_back(geo::make_apple(18));
-  if (name == "polyp") meshes.push_back(geo::make_polyp(8));
-  if (name == "letters")
-    for (const char letter : {'K', 'E', 'R', 'F'}) meshes.push_back(geo::make_letter(letter, 0.25, 24));
-  s.models = geo::place_models(s.scene, std::move(meshes));
+  s.scene = sample_scene(name);
+  s.models = geo::place_models(s.scene, sample_models(name));
   live::adapt_scene(s.scene, rate, false);
   return s;
 }
@@ -96,7 +90,7 @@ class Running {
  public:
   explicit Running(const sim::Setup& s)
       : session_(s, {}), server_({"127.0.0.1", 0, "token", "", "bench"}, inbox_), loop_([this] {
-          live::run_loop(session_, inbox_, server_, {"bench", 0, [this] { return !stops_.load(); }});
+          live::run_loop(session_, inbox_, server_, {"bench", 0, [this] { return !stops_.load(); }, false});
         }) {}
   ~Running() {
     stops_ = true;

@@ -2,10 +2,12 @@
 
 scalpel: an edge that follows the pointer on the surface cuts in; pause, step, undo and reset by their buttons.
 wound: the scalpel's edge stands on the skin as it is drawn, and passes over an open cut without going into it.
+model: a model without a scene waits for the first hand, and again after a reset.
 pin: it holds its place while the body is shaken. sliders: the material has the values that they show.
 reconnect: a page that lost its connection, and one that is loaded again, show the whole state.
 Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
 """
+import time
 from hand import along
 from page_session import Session, check, hand, run
 
@@ -101,6 +103,31 @@ GROOVE = """(() => {
     sent.push({ u: p.dot(across), w: p.dot(eye), facing: new THREE.Vector3(...scalpel.normal).dot(eye) });
   };
 })()"""
+
+
+def model():
+    session = Session("polyp", scene=False)
+
+    def waits(when):
+        hand.wait("live.time === 0")
+        time.sleep(0.5)
+        check(f"model: {when}, time went to {hand.run('live.time')}", hand.run("live.time") == 0)
+
+    waits("before the first touch")
+    hand.key("o")
+    hand.drag([(300, 250), (330, 260)])
+    hand.key("k")
+    waits("with another view")
+    middle = [(a + b) / 2 for a, b in zip(*hand.run("live.told.box"))]
+    x, y = hand.place(middle)
+    hand.drag(along((x - 250, y), (x + 250, y), steps=12), each=lambda: hand.wait("live.frame === null"))
+    hand.wait("live.time > 0.3 && live.stats.undo === 1")
+    hand.key("r")
+    waits("after a reset")
+    hand.button("#step")
+    hand.wait("live.time > 0")
+    check(f"model: the console has {hand.errors}", not hand.errors)
+    check("model: exit code", session.program.stop() == 0)
 
 
 def wound():

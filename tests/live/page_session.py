@@ -29,10 +29,10 @@ def figures(path):
 class Session:
     """A scene in kerf-live, and a page that shows it."""
 
-    def __init__(self, name, *options):
+    def __init__(self, name, *options, scene=True):
         self.name = name
-        self.program = Program(os.path.join(tools, "kerf-live"), os.path.join(scenes, name + ".toml"), "--no-blades", "--set", f"body.mesh={models}/{name}.ply",
-                               *options)
+        subject = [os.path.join(scenes, name + ".toml"), "--no-blades", "--set", f"body.mesh={models}/{name}.ply"] if scene else [f"{models}/{name}.ply"]
+        self.program = Program(os.path.join(tools, "kerf-live"), *subject, *options)
         hand.errors.clear(), hand.requests.clear()
         hand.visit(self.program.address + "#shadows=false")
 

@@ -551,6 +551,13 @@ simulation)
   expect 65 "no row 3" kerf-sim s.toml -o x --set blade.3.thickness=1
   expect 65 "names no row" kerf-sim s.toml -o x --set blade.first.thickness=1
   expect 65 "another scene" kerf-sim s.toml -o whole --resume --set material.young=2e5
+  # Names of files that are empty, as of a shell variable that is not set.
+  expect 2 "'body.mesh=' names no file; write body.mesh=FILE" kerf-sim s.toml -o x --set body.mesh=
+  expect 2 "'score.0.file=' names no file" kerf-sim s.toml -o x --set score.0.file=
+  sed 's/^mesh = .*/mesh = ""/' s.toml >unnamed.toml && expect 65 "unnamed.toml:.*'body.mesh' is empty: name the model" kerf-sim unnamed.toml -o x
+  for tool in kerf-info kerf-repair "kerf-sample --spacing 20%" "kerf-score -o x" "kerf-pieces -o x" "kerf-view -o x.png" "kerf-sim -o x" "kerf-crack cube.ply -o x --front"; do
+    expect 66 "name of an input file is empty" $tool ""
+  done
   expect 73 "holds a run already" kerf-sim s.toml -o whole
   # Up is where gravity comes from.
   kerf-sim -q s.toml -o upright --frames 1 --set gravity=[0,-9.81,0] && kerf-sim -q s.toml -o aslant --frames 1 --set gravity=[0,-9.81,1] || fail "gravity along y"

@@ -1,4 +1,5 @@
-// Input is taken right before a frame is computed. Without a page, or paused, nothing is computed.
+// Input is taken right before a frame is computed. Without a page, paused, or while it waits for a
+// touch, nothing is computed.
 #include "live/loop.h"
 
 #include <algorithm>
@@ -24,12 +25,13 @@ class Loop {
         options_(options),
         pacer_(1 / session.original().frame_rate, session.effort(), session.least_effort()),
         scene_(std::make_shared<std::string>(scene_text(session, options.name))),
-        effort_(session.effort()) {}
+        effort_(session.effort()),
+        waits_(options.waits) {}
 
   void run() {
     publish();
     while (options_.keep_on() && !is_deserted()) {
-      const bool moves = !pages_.empty() && (!paused_ || steps_ > 0);
+      const bool moves = !pages_.empty() && !waits_ && (!paused_ || steps_ > 0);
       const auto soon = Clock::now() + std::chrono::milliseconds(100);
       // Until a frame is due, requests wait for it: so the input is the latest.
       if (moves)
@@ -38,7 +40,7 @@ class Loop {
         inbox_.wait_until(soon);
       bool changed = false;
       for (Request& request : inbox_.take()) changed |= take(std::move(request));
-      if (!moves) {
+      if (!moves || waits_) {  // a reset may be among the requests
         pacer_.restart();
         if (changed) publish();
         continue;
@@ -94,7 +96,13 @@ class Loop {
     return false;
   }
   bool obey(ClientId page, Command& command) {
+    if (is_touch(command)) waits_ = false;
     return std::visit([&](const auto& c) { return obey_command(page, c); }, command);
+  }
+  static bool is_touch(const Command& command) {
+    return std::holds_alternative<Stroke>(command) || std::holds_alternative<Grab>(command) ||
+           std::holds_alternative<Pin>(command) || std::holds_alternative<Set>(command) ||
+           std::holds_alternative<Step>(command);
   }
   bool obey_command(ClientId, const Acknowledge&) { return false; }
   bool obey_command(ClientId, const Want&) { return true; }
@@ -103,7 +111,7 @@ class Loop {
   bool obey_command(ClientId, const Pin& c) { return session_.obey(c), true; }
   bool obey_command(ClientId, const Set& c) { return session_.obey(c), true; }
   bool obey_command(ClientId, const Undo&) { return session_.undo(), restart(), true; }
-  bool obey_command(ClientId, const Reset&) { return session_.reset(), restart(), true; }
+  bool obey_command(ClientId, const Reset&) { return session_.reset(), restart(), waits_ = options_.waits, true; }
   bool obey_command(ClientId, const Pause& c) { return paused_ = c.on, true; }
   bool obey_command(ClientId, const Step&) { return paused_ = true, ++steps_, false; }
 
@@ -154,6 +162,7 @@ class Loop {
   bool came_ = false, paused_ = false;
   int steps_ = 0;  // to be made while paused
   Effort effort_;  // in force, unless the scene changes it
+  bool waits_;     // for the first touch
   Clock::time_point gone_ = Clock::now(), said_ = Clock::now();
   std::string message_;
   std::uint64_t number_ = 0, graphs_ = 0;

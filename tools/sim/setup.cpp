@@ -36,7 +36,9 @@ geo::SceneOverrides parse_overrides(const std::vector<std::string>& settings) {
     overrides.push_back({s.substr(0, equals), s.substr(equals + 1)});
     auto& [key, value] = overrides.back();
     const std::string last = key.substr(key.find_last_of('.') + 1);
-    if (last == "mesh" || last == "motion" || last == "file") value = "\"" + fs::absolute(value).string() + "\"";
+    if (last != "mesh" && last != "motion" && last != "file") continue;
+    if (value.empty()) throw tool::UsageError("--set '" + s + "' names no file; write " + key + "=FILE");
+    value = "\"" + fs::absolute(value).string() + "\"";
   }
   return overrides;
 }

@@ -64,24 +64,21 @@ class PenaltyAssembly {
            const std::vector<Vec3>& at, double separation) {
     const std::vector<RelativeStencil> stencils =
         relative_stencils(in_.weights, constraints, stands_for, in_.free.inverse_mass);
-    std::vector<double> depth(stencils.size());
-    std::vector<Vec3> start(stencils.size());
+    std::vector<SelfContactPenalty::Addition> all(stencils.size());
     parallel_for(stencils.size(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const ContactConstraint& c = constraints[i];
         const double limit = separation > 0 ? std::min(separation, separation_at_rest(c)) : 0;
         const double deficit = limit - c.normal.dot(position_of(c.a, at) - position_of(c.b, at));
-        depth[i] = deficit > 0 ? recovery * deficit : deficit;
-        start[i] = weighted_sum(stencils[i].entries, in_.displacement);
+        // Without the nodes that both points share: these would make it too stiff near a crack
+        // front.
+        const bool moves = stencils[i].inverse_mass_a + stencils[i].inverse_mass_b > 0;
+        all[i] = {moves ? &stencils[i] : nullptr, c.normal, deficit > 0 ? recovery * deficit : deficit,
+                  moves ? stiffness(c, stencils[i]) : 0, weighted_sum(stencils[i].entries, in_.displacement)};
       }
     });
-    penalty_.reserve(stencils);
-    for (std::size_t i = 0; i < stencils.size(); ++i) {
-      // Without the nodes that both points share: near a crack front these would make it too stiff.
-      const double inverse_mass = stencils[i].inverse_mass_a + stencils[i].inverse_mass_b;
-      if (inverse_mass > 0)
-        penalty_.add(stencils[i], constraints[i].normal, depth[i], stiffness(constraints[i], stencils[i]), start[i]);
-    }
+    std::erase_if(all, [](const auto& addition) { return !addition.stencil; });
+    penalty_.add(all);
   }
 
   // Distance of the two points along the normal in the undeformed body: points that were modelled

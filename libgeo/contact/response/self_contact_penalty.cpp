@@ -3,21 +3,28 @@
 #include "contact/response/self_contact_penalty.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "kerf/parallel.h"
 
 namespace geo {
 
-void SelfContactPenalty::add(const RelativeStencil& stencil, const Vec3& normal, double depth, double stiffness,
-                             const Vec3& start) {
-  const std::size_t first = entries_.size();
-  contacts_.push_back({first, first + stencil.entries.size(), normal, depth, stiffness,
-                       std::max(0.0, -depth) / weight_norm(stencil.entries), start, false});
-  entries_.insert(entries_.end(), stencil.entries.begin(), stencil.entries.end());
-}
-
-void SelfContactPenalty::reserve(std::span<const RelativeStencil> stencils) {
+void SelfContactPenalty::add(std::span<const Addition> contacts) {
+  const std::size_t before = contacts_.size();
   std::size_t entries = entries_.size();
-  for (const RelativeStencil& stencil : stencils) entries += stencil.entries.size();
-  entries_.reserve(entries), contacts_.reserve(contacts_.size() + stencils.size());
+  for (const Addition& c : contacts) {
+    const std::size_t first = std::exchange(entries, entries + c.stencil->entries.size());
+    contacts_.push_back({first, entries, c.normal, c.depth, c.stiffness, 0, c.start, false});
+  }
+  entries_.resize(entries);
+  parallel_for(contacts.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::vector<NodeWeight>& stencil = contacts[k].stencil->entries;
+      Contact& c = contacts_[before + k];
+      c.activation_distance = std::max(0.0, -c.depth) / weight_norm(stencil);
+      std::copy(stencil.begin(), stencil.end(), entries_.begin() + static_cast<std::ptrdiff_t>(c.first));
+    }
+  });
 }
 
 double SelfContactPenalty::energy(std::size_t k, const Vec3& d) const {

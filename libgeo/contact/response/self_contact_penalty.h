@@ -33,9 +33,19 @@ class SelfContactPenalty : public Potential {
     add(stencil, normal, depth, stiffness, weighted_sum(stencil.entries, u));
   }
   /// The same, given the relative displacement at the beginning.
-  void add(const RelativeStencil& stencil, const Vec3& normal, double depth, double stiffness, const Vec3& start);
-  /// Reserves memory for contacts with these stencils.
-  void reserve(std::span<const RelativeStencil> stencils);
+  void add(const RelativeStencil& stencil, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
+    const Addition one{&stencil, normal, depth, stiffness, start};
+    add({&one, 1});
+  }
+  /// A contact as the arguments of add() describe it.
+  struct Addition {
+    const RelativeStencil* stencil;
+    Vec3 normal;
+    double depth, stiffness;
+    Vec3 start;
+  };
+  /// Adds contacts in their order.
+  void add(std::span<const Addition> contacts);
   /// Number of contacts with a normal force at their last derivatives().
   std::size_t pressing() const;
 

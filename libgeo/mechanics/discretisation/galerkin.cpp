@@ -185,10 +185,13 @@ struct BlockUpdate {
   }
 
   // Records in `changes` what became of the points in the new block `now`, the index of which is
-  // `number`. `first`: its first point.
+  // `number`. `first`: its first point. Uses up `shapes`.
   void record(std::uint32_t number, std::size_t first, const PointBlock& now, std::span<const PointBlock> old,
-              PointChanges& changes) const {
+              PointChanges& changes) {
     for (const auto i : stale) changes.is_stale[first + i] = 1;
+    for (std::size_t s = 0; s < stale.size(); ++s)
+      if (!shapes[s].value.empty())
+        changes.valued.emplace_back(static_cast<std::uint32_t>(first + stale[s]), std::move(shapes[s]));
     if (same_block == none) {
       for (const auto j : now.nodes) changes.node_changed[j] = 1;
       return;
@@ -239,7 +242,8 @@ void Galerkin::mark_changed(const Body& body, const BodyDelta& delta, std::span<
         nodes_.push_back(i.value);
 }
 
-PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points) {
+PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points,
+                                       const std::function<bool(const Vec3&)>& wants_values) {
   PointChanges result;
   const auto old_block_begin = block_begin_;
   std::vector<std::uint32_t> old_cell(cells_.cells().size());  // per cell: its old index, or ~0u
@@ -267,7 +271,8 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points)
   for (BlockUpdate& r : updates)
     for (std::size_t s = 0; s < r.stale.size(); ++s) {
       const PointBlock::Source& source = r.sources[r.stale[s]];
-      tasks.push_back({&r.points[r.stale[s]], &r.shapes[s], source.block, source.point});
+      MaterialPoint& point = r.points[r.stale[s]];
+      tasks.push_back({&point, &r.shapes[s], source.block, source.point, wants_values(point.position)});
     }
   compute_supports(body, std::move(tasks), nullptr, &changes.visibility());
   parallel_for(updates.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -2,6 +2,8 @@
 // nodes that they see, in blocks that are updated incrementally after cuts.
 #pragma once
 
+#include <functional>
+
 #include "mechanics/discretisation/material_points.h"
 #include "mechanics/discretisation/quadrature.h"
 
@@ -20,8 +22,10 @@ class Galerkin {
   /// True if changes have been marked since the last rebuild.
   bool has_changes() const { return !faces_.empty() || !supports_.empty(); }
   /// Recomputes points whose cell, support or lines of sight the marked changes touch. The result
-  /// equals that of a build from scratch, bit for bit.
-  PointChanges rebuild_changed(const Body& body, MaterialPoints& points);
+  /// equals that of a build from scratch, bit for bit. `wants_values`: whether PointChanges::valued
+  /// is to have the point at a position; called by several threads.
+  PointChanges rebuild_changed(const Body& body, MaterialPoints& points,
+                               const std::function<bool(const Vec3&)>& wants_values);
 
  private:
   std::span<const QuadratureCell> cells_of(std::size_t block) const {

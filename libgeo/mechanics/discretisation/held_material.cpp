@@ -27,11 +27,6 @@ bool holds(const HeldBox& box, const Vec3& x) {
   return (x.array() >= box.lo.array()).all() && (x.array() <= box.hi.array()).all();
 }
 
-// Farthest from a box that a point is affected: supports of points may be widened.
-double largest_reach(const NodeSet& nodes) {
-  return width * support_factors.back() * *std::max_element(nodes.radius.begin(), nodes.radius.end());
-}
-
 Vec3 nearest_in(const HeldBox& box, const Vec3& x) { return x.cwiseMax(box.lo).cwiseMin(box.hi); }
 
 // The candidate for which value() is greatest, the first of several.
@@ -130,6 +125,15 @@ struct HeldMaterial::Shapes {
   }
 };
 
+double HeldMaterial::reach_of(const NodeSet& nodes) {
+  return width * support_factors.back() * *std::max_element(nodes.radius.begin(), nodes.radius.end());
+}
+
+bool HeldMaterial::is_near(const Vec3& x, double reach) const {
+  return std::any_of(boxes_.begin(), boxes_.end(),
+                     [&](const HeldBox& box) { return (x - nearest_in(box, x)).norm() < reach; });
+}
+
 bool HeldMaterial::set_boxes(std::span<const HeldBox> boxes) {
   if (std::equal(boxes.begin(), boxes.end(), boxes_.begin(), boxes_.end())) return false;
   boxes_.assign(boxes.begin(), boxes.end());
@@ -216,7 +220,7 @@ class HeldMaterial::Former {
   std::vector<Replaced*> same_block_;  // per block now
 };
 
-bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& component, const PointChanges* changes,
+bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& component, PointChanges* changes,
                          MaterialPoints& points) {
   std::vector<Replaced> replaced_before = std::move(replaced_);
   const std::vector<std::uint32_t> component_before = std::exchange(component_, component);
@@ -232,7 +236,7 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
   if (anchors_.empty()) return false;
   std::optional<Former> former;
   if (changes && same_anchors) former.emplace(replaced_before, *changes, component_before, component, points);
-  const double reach = largest_reach(body.nodes);
+  const double reach = reach_of(body.nodes);
   std::vector<Near> near;
   std::size_t first = 0, next = 0;
   for (std::uint32_t b = 0; b < points.blocks.size(); ++b, first = next) {
@@ -257,7 +261,7 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
     else
       n.stale.resize(block.points.size()), std::iota(n.stale.begin(), n.stale.end(), 0);
   }
-  replace(body, component, near, points);
+  replace(body, component, near, changes, points);
   std::sort(replaced_.begin(), replaced_.end(), [](const auto& a, const auto& b) { return a.block < b.block; });
   return !replaced_.empty();
 }
@@ -266,37 +270,49 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
 struct HeldMaterial::Candidate {
   std::uint32_t block, point;
   MaterialPoint copy;
-  ShapeGradients plain;
+  ShapeGradients plain;  // empty until it is computed
   std::optional<ShapeGradients> held;
 };
 
 std::vector<HeldMaterial::Candidate> HeldMaterial::candidates_in(const Near& near, const Body& body,
-                                                                 const MaterialPoints& points) const {
-  const double reach = largest_reach(body.nodes);
+                                                                 const MaterialPoints& points,
+                                                                 PointChanges* changes) const {
+  const double reach = reach_of(body.nodes);
   std::vector<Candidate> candidates;
+  // Both lists are ascending.
+  std::span<std::pair<std::uint32_t, ShapeGradients>> valued;
+  if (changes) valued = changes->valued;
+  const auto is_before = [](const auto& entry, std::size_t point) { return entry.first < point; };
+  auto known = std::lower_bound(valued.begin(), valued.end(), near.first_point, is_before);
   for (const auto i : near.stale) {
     const MaterialPoint& p = points.blocks[near.block].points[i];
     if (p.quality != MomentQuality::singular && std::any_of(anchors_.begin(), anchors_.end(), [&](const Anchors& a) {
           return (p.position - nearest_in(boxes_[a.box], p.position)).norm() < reach;
-        }))
-      candidates.push_back({near.block, i, p, {}, {}}), candidates.back().copy.influence_radius = 0;
+        })) {
+      Candidate& c = candidates.emplace_back(Candidate{near.block, i, p, {}, {}});
+      c.copy.influence_radius = 0;
+      const std::size_t point = near.first_point + i;
+      while (known != valued.end() && is_before(*known, point)) ++known;
+      if (known != valued.end() && known->first == point) c.plain = std::move(known->second);
+    }
   }
   return candidates;
 }
 
 // Lines of sight are those of the plain basis, which the blocks know.
 void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const Near> blocks,
-                           MaterialPoints& points) {
+                           PointChanges* changes, MaterialPoints& points) {
   std::vector<Candidate> candidates;
   std::vector<std::size_t> first(1, 0);  // per block its first candidate; one more at the end
   for (const Near& near : blocks) {
-    auto of_block = candidates_in(near, body, points);
+    auto of_block = candidates_in(near, body, points, changes);
     candidates.insert(candidates.end(), std::make_move_iterator(of_block.begin()),
                       std::make_move_iterator(of_block.end()));
     first.push_back(candidates.size());
   }
   std::vector<SupportTask> tasks;
-  for (Candidate& c : candidates) tasks.push_back({&c.copy, &c.plain, &points.blocks[c.block], c.point, true});
+  for (Candidate& c : candidates)
+    if (c.plain.value.empty()) tasks.push_back({&c.copy, &c.plain, &points.blocks[c.block], c.point, true});
   const VisibilityChanges no_changes({}, {}, body.nodes.size());
   if (!tasks.empty()) compute_supports(body, std::move(tasks), nullptr, &no_changes);
   const Shapes shapes{body, box_of_node_, boxes_, anchors_, component};

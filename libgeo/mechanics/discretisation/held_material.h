@@ -23,13 +23,17 @@ class HeldMaterial {
  public:
   /// Sets the boxes. Returns false if they are the same as before; else call restore(), apply().
   bool set_boxes(std::span<const HeldBox> boxes);
+  /// Whether apply() may replace the shape gradients of a point at x. `reach`: reach_of(nodes).
+  bool is_near(const Vec3& x, double reach) const;
+  /// Farthest from a box that a point is replaced, model units: supports of points may be widened.
+  static double reach_of(const NodeSet& nodes);
   /// Puts back the shape gradients of the plain basis. Keeps results of apply() for the next one.
   void restore(MaterialPoints& points);
   /// Replaces blocks of points near boxes. Precondition: `points` have the plain basis, numbered or
   /// not. `component`: per node, of the visibility graph. `changes`: of the points since restore();
-  /// null: none. The result depends on body, boxes and components alone. Returns whether any block
-  /// is replaced; then the points are to be numbered.
-  bool apply(const Body& body, const std::vector<std::uint32_t>& component, const PointChanges* changes,
+  /// null: none. Its `valued` points are used up. The result depends on body, boxes and components
+  /// alone. Returns whether any block is replaced; then the points are to be numbered.
+  bool apply(const Body& body, const std::vector<std::uint32_t>& component, PointChanges* changes,
              MaterialPoints& points);
 
  private:
@@ -60,9 +64,10 @@ class HeldMaterial {
   struct Candidate;
 
   std::vector<Anchors> anchors_of(const Body& body, const std::vector<std::uint32_t>& component) const;
-  std::vector<Candidate> candidates_in(const Near& near, const Body& body, const MaterialPoints& points) const;
+  std::vector<Candidate> candidates_in(const Near& near, const Body& body, const MaterialPoints& points,
+                                       PointChanges* changes) const;
   void replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const Near> blocks,
-               MaterialPoints& points);
+               PointChanges* changes, MaterialPoints& points);
 
   std::vector<HeldBox> boxes_;
   std::vector<std::uint32_t> box_of_node_;  // per node: the first box that holds it, or ~0u

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "kerf/material.h"
@@ -94,6 +95,8 @@ struct PointChanges {
   std::vector<std::uint32_t> new_block;  ///< per old block: the index of the block that has the same points now
   std::vector<char> is_stale;            ///< per point now: 1 if it was computed anew
   std::vector<char> node_changed;        ///< per node: 1 if points or shape gradients with it, or their blocks, changed
+  /// Some points computed anew: index, and shape functions with values. Ascending.
+  std::vector<std::pair<std::uint32_t, ShapeGradients>> valued;
 };
 
 /// All material points of a body.

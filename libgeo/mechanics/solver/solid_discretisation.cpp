@@ -52,7 +52,9 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
   parallel_invoke([&] { aggregates = Aggregates(position, mls, component, components); },
                   [&] {
                     held.restore(points);
-                    changes = galerkin->rebuild_changed(body, points);
+                    const double reach = HeldMaterial::reach_of(body.nodes);
+                    changes =
+                        galerkin->rebuild_changed(body, points, [&](const Vec3& x) { return held.is_near(x, reach); });
                     points.set_materials(materials);
                     inverses.update(subdomains, subdomains.update({position, mls, spacing, points}, changed, changes));
                   });
@@ -73,7 +75,7 @@ void SolidDiscretisation::hold(const Body& body, std::span<const HeldBox> boxes)
   apply_held(body, nullptr);
 }
 
-void SolidDiscretisation::apply_held(const Body& body, const PointChanges* changes) {
+void SolidDiscretisation::apply_held(const Body& body, PointChanges* changes) {
   if (!held.apply(body, component, changes, points)) return;
   points.number_points(size());
   points.set_materials(materials);

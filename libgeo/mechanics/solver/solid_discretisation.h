@@ -83,7 +83,7 @@ struct SolidDiscretisation {
   void update_plasticity(State& state, double dt) const;
 
  private:
-  void apply_held(const Body& body, const PointChanges* changes);
+  void apply_held(const Body& body, PointChanges* changes);
   void number_new_components(const VisibilityGraph& graph, std::size_t first_new);
 };
 

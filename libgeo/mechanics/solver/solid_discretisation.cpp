@@ -52,7 +52,7 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
   parallel_invoke([&] { aggregates = Aggregates(position, mls, component, components); },
                   [&] {
                     held.restore(points);
-                    changes = galerkin->rebuild_changed(body, points);
+                    changes = galerkin->rebuild_changed(body, component, points);
                     points.set_materials(materials);
                     inverses.update(subdomains, subdomains.update({position, mls, spacing, points}, changed, changes));
                   });

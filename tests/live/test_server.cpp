@@ -115,6 +115,20 @@ TEST_CASE("only the printed address answers") {
   CHECK_THROWS_AS(Server({"nowhere", 0, token, "", ""}, s.inbox), geo::InputError);
 }
 
+TEST_CASE("a stroke is late by the time that its begin has waited") {
+  Inbox inbox;
+  const auto before = std::chrono::steady_clock::now();
+  for (const Phase phase : {Phase::begin, Phase::move, Phase::end}) inbox.put({7, Stroke{1, 1, phase}});
+  inbox.put({7, Reset{}}), inbox.put({7, Grab{}}), inbox.put({7, Leave{}});
+  const auto after = std::chrono::steady_clock::now();
+  const auto requests = inbox.take();
+  REQUIRE(requests.size() == 6);
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    CHECK(is_late_stroke(requests[i], after + std::chrono::seconds(2), 2) == (i == 0));
+    CHECK_FALSE(is_late_stroke(requests[i], before + std::chrono::seconds(2), 2.1));
+  }
+}
+
 TEST_CASE("a page gets the whole state, then the newest of what follows, one message at a time") {
   Served s;
   s.server.publish(snapshot(1));

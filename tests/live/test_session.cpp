@@ -239,6 +239,66 @@ TEST_CASE("requests that cannot be obeyed are refused, and hands of a page that 
   session.obey(1, knife(1, Phase::move, 0.5));  // of a stroke that is over: nothing
 }
 
+TEST_CASE("a stroke far behind its pointer ends a time after it was released, and is recorded as far as it came") {
+  Session session(setup(), {});
+  session.obey(1, knife(1, Phase::begin, -3));
+  session.obey(1, knife(1, Phase::end, 20));
+  session.advance();
+  CHECK(session.end_late_strokes(0.4, 1) == 0);
+  session.advance();
+  CHECK(session.end_late_strokes(0.4, 1) == 0);
+  REQUIRE(session.edges().size() == 1);
+  session.advance();
+  CHECK(session.last_stroke() == 0);
+  CHECK(session.end_late_strokes(0.4, 1) == 1);
+  CHECK(session.last_stroke() == 1);
+  session.advance();
+  CHECK(session.edges().empty());
+  // One that is held is never late.
+  session.obey(1, knife(2, Phase::begin, -1));
+  session.obey(1, knife(2, Phase::move, 1.2));
+  for (int i = 0; i < 5; ++i) {
+    session.advance();
+    CHECK(session.end_late_strokes(10, 1) == 0);
+  }
+  CHECK(session.pieces() == 2);
+  session.obey(1, knife(2, Phase::end, 1.2));
+  session.advance();
+  CHECK(session.last_stroke() == 2);
+  CHECK(replayed(session) == surface_bytes(session.run()));
+}
+
+TEST_CASE("undo states and recordings are bounded") {
+  SessionBounds bounds;
+  bounds.saved = 3;
+  {
+    Session session(setup(), {}, bounds);
+    for (std::uint64_t id = 1; id <= 4; ++id) cut(session, id, -0.3, 0.2 * double(id));
+    CHECK(session.strokes() == 3);
+    for (int k = 0; k < 3; ++k) session.undo();
+    CHECK_THROWS_AS(session.undo(), BadMessage);
+    CHECK(session.recording().blades.size() == 1);
+  }
+  bounds.saved = 16, bounds.saved_faces = 1, bounds.recorded = 2, bounds.changes = 1;
+  Session session(setup(), {}, bounds);
+  cut(session, 1, -0.3, 0.2);
+  cut(session, 2, 0.3, 1.2);
+  CHECK(session.strokes() == 1);
+  CHECK_THROWS_AS(session.obey(1, knife(3, Phase::begin, 0)), BadMessage);
+  session.obey(Set{2e4, {}, {}, {}});
+  CHECK_THROWS_AS(session.obey(Set{3e4, {}, {}, {}}), BadMessage);
+  const Effort before = session.effort();
+  session.set_effort({0.02, 1});
+  CHECK(session.effort() == before);
+  session.undo();
+  session.obey(1, knife(4, Phase::begin, 0));
+  session.reset();
+  bounds.recorded = 100, bounds.keys = 5;
+  Session few_keys(setup(), {}, bounds);
+  cut(few_keys, 1, -0.3, 0.2);
+  CHECK_THROWS_AS(few_keys.obey(1, knife(2, Phase::begin, 0)), BadMessage);
+}
+
 TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
   const Seeds run = seeds(2);
   for (std::uint64_t seed = run.first; seed < run.first + static_cast<std::uint64_t>(run.count); ++seed) {

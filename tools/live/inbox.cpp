@@ -18,7 +18,14 @@ std::pair<int, std::uint64_t> moved(const Request& r) {
 
 }  // namespace
 
+bool is_late_stroke(const Request& request, std::chrono::steady_clock::time_point now, double seconds) {
+  const auto* command = std::get_if<Command>(&request.what);
+  const auto* stroke = command ? std::get_if<Stroke>(command) : nullptr;
+  return stroke && stroke->phase == Phase::begin && now - request.arrived >= std::chrono::duration<double>(seconds);
+}
+
 bool Inbox::put(Request request) {
+  request.arrived = std::chrono::steady_clock::now();
   {
     const std::lock_guard lock(mutex_);
     const auto key = moved(request);

@@ -26,7 +26,11 @@ struct Save {
 struct Request {
   ClientId page = 0;
   std::variant<Command, Join, Leave, Save> what;
+  std::chrono::steady_clock::time_point arrived = {};  ///< set by Inbox::put()
 };
+
+/// Whether a request is the begin of a stroke that waited for `seconds` or longer.
+bool is_late_stroke(const Request& request, std::chrono::steady_clock::time_point now, double seconds);
 
 /// A queue in which a pointer's move replaces the move before it.
 class Inbox {

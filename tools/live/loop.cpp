@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "live/memory.h"
 #include "live/pace.h"
 #include "live/save.h"
 #include "live/scene_text.h"
@@ -15,6 +16,10 @@ namespace live {
 namespace {
 
 using Clock = Pacer::Clock;
+
+// Seconds by which input may be late. A stroke whose begin waited longer is left out. A stroke ends
+// this long after its pointer was released.
+constexpr double latest_begin = 1, latest_end = 2;
 
 class Loop {
  public:
@@ -57,8 +62,13 @@ class Loop {
     if (const std::size_t refused = session_.stats().refused; refused > 0)
       say(std::to_string(refused) + (refused == 1 ? " crack step" : " crack steps") +
           " would have made surfaces cross; the cut goes on where it can");
-    pacer_.add(begin, Clock::now());
+    const auto end = Clock::now();
+    pacer_.add(begin, end);
+    if (session_.end_late_strokes(std::chrono::duration<double>(end - begin).count(), latest_end) > 0)
+      say("frames take too long: a stroke ends where its edge is");
     steps_ = std::max(0, steps_ - 1);
+    constexpr std::chrono::seconds release_interval(10);
+    if (end - released_ > release_interval) release_free_memory(), released_ = end;
     if (const Effort effort = pacer_.effort(); effort != effort_) session_.set_effort(effort), effort_ = effort;
   }
 
@@ -71,6 +81,8 @@ class Loop {
   bool take(Request request) {
     const ClientId page = request.page;
     try {
+      if (is_late_stroke(request, Clock::now(), latest_begin))
+        throw BadMessage("frames take longer than a second: a stroke that began meanwhile is left out");
       return std::visit([&](auto& what) { return obey(page, what); }, request.what);
     } catch (const BadMessage& e) {
       server_.tell(page, "error", e.what());
@@ -116,7 +128,10 @@ class Loop {
   bool obey_command(ClientId, const Step&) { return paused_ = true, ++steps_, false; }
 
   // After going back, the effort is what the recording says.
-  void restart() { effort_ = session_.effort(), pacer_.restart(); }
+  void restart() {
+    release_free_memory();
+    effort_ = session_.effort(), pacer_.restart();
+  }
 
   void say(const std::string& sentence) { message_ = sentence, said_ = Clock::now(); }
 
@@ -163,7 +178,7 @@ class Loop {
   int steps_ = 0;  // to be made while paused
   Effort effort_;  // in force, unless the scene changes it
   bool waits_;     // for the first touch
-  Clock::time_point gone_ = Clock::now(), said_ = Clock::now();
+  Clock::time_point gone_ = Clock::now(), said_ = Clock::now(), released_ = Clock::now();
   std::string message_;
   std::uint64_t number_ = 0, graphs_ = 0;
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> graph_;

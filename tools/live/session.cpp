@@ -15,7 +15,6 @@ namespace live {
 namespace {
 
 constexpr std::size_t most_hands = 8;     // blades and springs at a time
-constexpr std::size_t most_saved = 16;    // strokes that can be undone
 constexpr int count_interval = 12;        // frames between two counts of pieces while a blade cuts
 constexpr double farthest_pull = 0.6;     // stretch of a spring, in diagonals of the body
 constexpr double most_motion = 2;         // of an edge point in a frame, in the finest node spacing: one cut
@@ -50,8 +49,11 @@ void adapt_scene(geo::Scene& scene, double rate, bool blades) {
   if (!blades) scene.blades.clear();
 }
 
-Session::Session(const sim::Setup& setup, const geo::Progress& progress)
-    : setup_(setup), start_(sim::first_checkpoint(setup, progress)), run_(sim::run_from(setup.scene, start_)) {
+Session::Session(const sim::Setup& setup, const geo::Progress& progress, const SessionBounds& bounds)
+    : setup_(setup),
+      bounds_(bounds),
+      start_(sim::first_checkpoint(setup, progress)),
+      run_(sim::run_from(setup.scene, start_)) {
   faces_ = run_.body().surface.face_count();
   for (std::uint32_t i = 0; i < run_.solid().size(); ++i) mass_ += run_.solid().mass(geo::NodeId(i));
   count_pieces();
@@ -67,7 +69,17 @@ void Session::count_pieces() {
   since_count_ = 0;
 }
 
+void Session::require_space() const {
+  const geo::Scene& scene = run_.scene();
+  std::size_t keys = 0;
+  for (const geo::Blade& b : scene.blades) keys += b.motion.keys.size();
+  for (const geo::Pull& p : scene.pulls) keys += p.motion.keys.size();
+  if (scene.blades.size() + scene.grips.size() + scene.pulls.size() >= bounds_.recorded || keys >= bounds_.keys)
+    throw BadMessage("the recording is full; save it and reset");
+}
+
 void Session::require_free_hand() const {
+  require_space();
   if (blades_.size() + pulls_.size() >= most_hands) throw BadMessage("there are as many strokes as can be at a time");
 }
 
@@ -153,6 +165,7 @@ void Session::obey(const Pin& pin) {
     pins_.erase(held);
     return;
   }
+  require_space();
   const double radius = pin.radius > 0 ? pin.radius : coarsest_spacing(run_.body());
   geo::Grip grip;
   grip.lo = x - geo::Vec3::Constant(radius), grip.hi = x + geo::Vec3::Constant(radius);
@@ -160,6 +173,7 @@ void Session::obey(const Pin& pin) {
 }
 
 void Session::obey(const Set& set) {
+  if (run_.scene().changes.size() >= bounds_.changes) throw BadMessage("the recording is full; save it and reset");
   geo::SceneChange change;
   change.young = set.young, change.damping = set.damping, change.gravity = set.gravity, change.friction = set.friction;
   try {
@@ -179,6 +193,7 @@ Effort Session::least_effort() const {
 }
 
 void Session::set_effort(const Effort& effort) {
+  if (run_.scene().changes.size() >= bounds_.changes) return;
   geo::SceneChange change;
   change.accuracy = effort.accuracy, change.dt = 1 / run_.scene().frame_rate / effort.steps;
   run_.change(change);
@@ -194,7 +209,10 @@ void Session::leave(ClientId page) {
 
 void Session::save() {
   const geo::Scene& scene = run_.scene();
-  if (saved_.size() >= most_saved) saved_.erase(saved_.begin());
+  std::size_t faces = run_.body().surface.face_count();
+  for (const Saved& s : saved_) faces += s.body.surface.face_count();
+  while (!saved_.empty() && (saved_.size() >= bounds_.saved || faces > bounds_.saved_faces))
+    faces -= saved_.front().body.surface.face_count(), saved_.erase(saved_.begin());
   saved_.push_back({run_.body(), run_.state(), scene.blades.size(), scene.grips.size(), scene.pulls.size(),
                     scene.changes.size(), checkpoints_, pins_});
 }
@@ -344,6 +362,14 @@ bool Session::end_hands() {
   }
   std::erase_if(pulls_, [&](const auto& entry) { return entry.second.ends; });
   return blades_.size() != before;
+}
+
+std::size_t Session::end_late_strokes(double seconds, double most) {
+  std::size_t late = 0;
+  for (auto& [hand, held] : blades_)
+    if (held.ends && (held.late += seconds) >= most) held.target = held.now, ++late;
+  if (late > 0) end_hands();
+  return late;
 }
 
 std::string Session::advance(bool whole) {

@@ -20,12 +20,22 @@ namespace live {
 /// The scene without its own blades, where `blades` is false; at least `rate` frames a second.
 void adapt_scene(geo::Scene& scene, double rate, bool blades);
 
+/// Bounds on what a session keeps.
+struct SessionBounds {
+  std::size_t saved = 16;            ///< states that undo can go back to
+  std::size_t saved_faces = 100000;  ///< of all these states together; one state may have more
+  std::size_t recorded = 4096;       ///< blades, springs and pins of the recording
+  std::size_t keys = 1 << 20;        ///< of their motions, when one more begins; a key is a frame of one of them
+  std::size_t changes = 1 << 16;     ///< of values, by hands and by effort
+};
+
 class Session {
  public:
   /// A new run. The scene is as adapt_scene() leaves it. Throws as begin_run().
-  Session(const sim::Setup& setup, const geo::Progress& progress);
+  Session(const sim::Setup& setup, const geo::Progress& progress, const SessionBounds& bounds = {});
 
-  /// Obeys a command of a page, between two frames. Throws BadMessage where it cannot be obeyed.
+  /// Obeys a command of a page, between two frames. Throws BadMessage where it cannot be obeyed, or
+  /// where the recording is full.
   void obey(ClientId page, const Stroke& stroke);
   void obey(ClientId page, const Grab& grab);
   void obey(const Pin& pin);
@@ -42,13 +52,18 @@ class Session {
   /// one step a frame. Explicit steps keep theirs. So do steps in which material cracks by stress:
   /// longer ones start fewer cracks.
   Effort least_effort() const;
-  /// Sets them, recorded as a change.
+  /// Sets them, recorded as a change. Does nothing where the recording has no space for one.
   void set_effort(const Effort& effort);
 
   /// Computes the next frame. Where it cannot be computed, the run goes back to before the last
   /// stroke, or begins anew; the result is then the reason, else empty.
   /// `whole`: edges move all the way to the pointer, however long the frame then takes.
   std::string advance(bool whole = false);
+
+  /// Ends strokes where their edges are, if they were released `most` seconds ago or earlier, and
+  /// returns their number. `seconds`: duration of the last frame. So an edge far behind its pointer
+  /// does not cut long after the hand has moved.
+  std::size_t end_late_strokes(double seconds, double most);
 
   /// Statistics of the last frame.
   const geo::FrameStats& stats() const { return stats_; }
@@ -87,6 +102,7 @@ class Session {
     std::optional<std::size_t> blade;    // added to the run when it moves first
     std::uint32_t faces = 0;             // of the complex, when the blade was added
     bool ends = false;
+    double late = 0;  // s since it was released
   };
   struct HeldPull {
     std::size_t pull;
@@ -111,6 +127,7 @@ class Session {
   void restore(Saved saved);
   // Continues as `scene` from a checkpoint, without hands.
   void go_on_from(const geo::Scene& scene, const std::string& checkpoint);
+  void require_space() const;
   void require_free_hand() const;
   void extend_hands(bool whole);
   void chase(HeldBlade& held, bool whole) const;
@@ -124,6 +141,7 @@ class Session {
   double pull_stiffness(std::uint32_t node) const;
 
   sim::Setup setup_;
+  SessionBounds bounds_;
   std::string start_;  // checkpoint of frame 0
   geo::Simulation run_;
   double mass_ = 0;

@@ -18,8 +18,9 @@ struct Lagging {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
 };
 
+// `straight`: they move on the way to their targets only.
 Lagging find_lagging(const std::vector<Triangle>& triangles, const std::vector<Vec3>& to, double edge, double gap,
-                     const std::vector<Vec3>& at) {
+                     bool straight, const std::vector<Vec3>& at) {
   constexpr double negligible = 0.01;  // of an edge: a smaller error is not worth a plane
   constexpr double farthest = 0.1;     // of an edge: longer moves would need planes between too many pairs
   Lagging result{std::vector<double>(at.size(), 0), at, {}};
@@ -33,7 +34,7 @@ Lagging find_lagging(const std::vector<Triangle>& triangles, const std::vector<V
     double longest = 0;
     for (const auto v : triangles[t])
       longest = std::max(longest, result.limit[v]), boxes[t].add(at[v]), boxes[t].add(result.target[v]);
-    moving[t] = longest > 0, boxes[t] = boxes[t].grown(longest + 0.5 * gap);
+    moving[t] = longest > 0, boxes[t] = boxes[t].grown((straight ? 0 : longest) + 0.5 * gap);
   }
   if (std::count(moving.begin(), moving.end(), 1) > 0) result.pairs = overlapping_pairs(std::move(boxes), &moving);
   return result;
@@ -43,7 +44,7 @@ Lagging find_lagging(const std::vector<Triangle>& triangles, const std::vector<V
 
 std::size_t advance_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& to, double edge,
                              double gap, std::vector<Vec3>& at) {
-  Lagging lagging = find_lagging(triangles, to, edge, gap, at);
+  Lagging lagging = find_lagging(triangles, to, edge, gap, false, at);
   if (lagging.target == at) return 0;
   move_straight(triangles, lagging.pairs, lagging.target, gap, at);
   for (std::size_t v = 0; v < at.size(); ++v)
@@ -53,7 +54,7 @@ std::size_t advance_vertices(const std::vector<Triangle>& triangles, const std::
 
 void advance_free_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& to, double edge, double gap,
                            std::vector<Vec3>& at) {
-  const Lagging lagging = find_lagging(triangles, to, edge, gap, at);
+  const Lagging lagging = find_lagging(triangles, to, edge, gap, true, at);
   if (lagging.target != at) move_straight(triangles, lagging.pairs, lagging.target, gap, at);
 }
 

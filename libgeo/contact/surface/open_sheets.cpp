@@ -110,10 +110,10 @@ class SheetOpener {
   std::size_t open_one_by_one(Representatives closed) {
     constexpr int most_trials = 20;  // five lengths, two normals, both copies or all but the first
     auto representative = coincident_representatives(surface_.site, positions_);
-    const auto pairs_of = pairs_at(closed);
+    auto pairs_of = pairs_at(closed);
     std::size_t next = 0;
     return std::erase_if(closed, [&](auto v) {
-      const auto& pairs = pairs_of[next++];
+      auto& pairs = pairs_of[next++];
       for (int trial = 0; trial < most_trials; ++trial) {
         const double step = std::ldexp(0.5 * gap_, -2 * (trial / 4));
         for (const auto c : coincident_[v]) {
@@ -122,11 +122,26 @@ class SheetOpener {
               trial % 2 == 1 && c == coincident_[v][0] ? closed_[v] : Vec3(closed_[v] - step * along[c].normalized());
           representative[c] = c;
         }
-        if (find_crossings(pairs, surface_.triangles, positions_, representative, true).empty()) return false;
+        if (!any_crosses(pairs, representative)) return false;
       }
       for (const auto c : coincident_[v]) positions_[c] = closed_[v], representative[c] = v;
       return true;
     });
+  }
+
+  // Whether a pair crosses. That pair becomes the first: it is likely to cross in the next trial,
+  // too.
+  bool any_crosses(std::vector<TrianglePair>& pairs, std::span<const std::uint32_t> representative) const {
+    const auto represented = [&](std::uint32_t t) {
+      const auto& [a, b, c] = surface_.triangles[t];
+      return Triangle{representative[a], representative[b], representative[c]};
+    };
+    const auto at = std::find_if(pairs.begin(), pairs.end(), [&](const TrianglePair& p) {
+      return triangles_cross(represented(p.first), represented(p.second), positions_, true);
+    });
+    if (at == pairs.end()) return false;
+    std::iter_swap(pairs.begin(), at);
+    return true;
   }
 
   // For each of the vertices the pairs with a triangle at one of its copies.

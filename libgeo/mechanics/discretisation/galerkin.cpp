@@ -23,8 +23,8 @@ constexpr std::size_t none = ~std::size_t(0);
 class Changes {
  public:
   Changes(const std::vector<std::array<Vec3, 3>>& faces, const std::vector<std::pair<Vec3, double>>& supports,
-          std::span<const std::uint32_t> nodes, std::size_t node_count)
-      : visibility_(faces, nodes, node_count), supports_(supports) {
+          std::span<const std::uint32_t> nodes, std::span<const std::uint32_t> component)
+      : visibility_(faces, nodes, component.size()), supports_(supports), component_(component) {
     for (const auto& [a, b, c] : faces) bounds_.add(box_of(a, b, c));
     for (const auto& [x, r] : supports) bounds_.add(Box3{x, x}.grown(support_factors.back() * r));
   }
@@ -61,20 +61,32 @@ class Changes {
     visibility_.faces().blocks(p.position, ends, touched.data());
     if (std::find(touched.begin(), touched.end(), 1) != touched.end()) return true;
     if (!p.occluded) return false;
-    std::erase_if(nodes, [&](auto j) { return sees_straight(block, point, j); });
+    forget_settled(block, point, nodes);
     return std::any_of(nodes.begin(), nodes.end(), [&](auto j) {
       return visibility_.meet_bent_paths(p.position, body.nodes.position[j], factor * body.nodes.radius[j], near);
     });
   }
 
  private:
-  static bool sees_straight(const PointBlock& block, std::size_t point, std::uint32_t node) {
-    for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
-      if (block.nodes[block.entry_node[q]] == node) return !block.entry_bent[q];
-    return false;
+  // Removes the nodes that a point sees straight ahead, and those without a path to it: unseen
+  // before, and in another component than the nodes straight ahead. Precondition: no changed face
+  // is between the point and nodes straight ahead.
+  void forget_settled(const PointBlock& block, std::size_t point, std::vector<std::uint32_t>& nodes) const {
+    enum class Seen { no, straight, bent };
+    const auto begin = block.entry_begin[point], end = block.entry_begin[point + 1];
+    std::optional<std::uint32_t> own;
+    for (auto q = begin; q < end && !own; ++q)
+      if (!block.entry_bent[q]) own = component_[block.nodes[block.entry_node[q]]];
+    std::erase_if(nodes, [&](auto j) {
+      Seen seen = Seen::no;
+      for (auto q = begin; q < end && seen == Seen::no; ++q)
+        if (block.nodes[block.entry_node[q]] == j) seen = block.entry_bent[q] ? Seen::bent : Seen::straight;
+      return seen == Seen::straight || (seen == Seen::no && own && component_[j] != *own);
+    });
   }
   VisibilityChanges visibility_;
   const std::vector<std::pair<Vec3, double>>& supports_;
+  std::span<const std::uint32_t> component_;  // per node, after the changes
   Box3 bounds_;
 };
 
@@ -206,7 +218,7 @@ struct BlockUpdate {
 
 }  // namespace
 
-Galerkin::Galerkin(const Body& body, MaterialPoints& points)
+Galerkin::Galerkin(const Body& body, std::span<const std::uint32_t> component, MaterialPoints& points)
     : cells_(body), block_begin_(cells_.groups(max_cells_per_block)) {
   const Occluders occluders = all_occluders(body.surface);
   points.blocks.resize(block_begin_.size() - 1);
@@ -218,7 +230,7 @@ Galerkin::Galerkin(const Body& body, MaterialPoints& points)
       std::vector<SupportTask> tasks;
       for (std::size_t i = 0; i < all.size(); ++i)
         set_position(body, cells[i / 4].point[i % 4], all[i]), tasks.push_back({&all[i], &shapes[i]});
-      compute_supports(body, std::move(tasks), &occluders);
+      compute_supports(body, std::move(tasks), &occluders, nullptr, component);
       set_volumes(cells, all);
       points.blocks[b] = PointBlock(std::move(all), shapes);
     }
@@ -242,7 +254,8 @@ void Galerkin::mark_changed(const Body& body, const BodyDelta& delta, std::span<
         nodes_.push_back(i.value);
 }
 
-PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points,
+PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::uint32_t> component,
+                                       MaterialPoints& points,
                                        const std::function<bool(const Vec3&)>& wants_values) {
   PointChanges result;
   const auto old_block_begin = block_begin_;
@@ -257,7 +270,7 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points,
         for (std::uint32_t k = 0; k < 4; ++k) result.old_point.push_back(c == ~0u ? c : 4 * c + k);
     }
   }
-  const Changes changes(faces_, supports_, nodes_, body.nodes.size());
+  const Changes changes(faces_, supports_, nodes_, component);
   std::vector<PointBlock> old(block_begin_.size() - 1);
   old.swap(points.blocks);
   std::vector<BlockUpdate> updates(points.blocks.size());
@@ -274,7 +287,7 @@ PointChanges Galerkin::rebuild_changed(const Body& body, MaterialPoints& points,
       MaterialPoint& point = r.points[r.stale[s]];
       tasks.push_back({&point, &r.shapes[s], source.block, source.point, wants_values(point.position)});
     }
-  compute_supports(body, std::move(tasks), nullptr, &changes.visibility());
+  compute_supports(body, std::move(tasks), nullptr, &changes.visibility(), component);
   parallel_for(updates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) points.blocks[b] = updates[b].make_block(cells_of(b), old);
   });

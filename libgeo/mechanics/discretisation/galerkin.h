@@ -14,17 +14,18 @@ class Galerkin {
  public:
   /// Without a body.
   Galerkin() = default;
-  /// Builds `points` for a body.
-  Galerkin(const Body& body, MaterialPoints& points);
+  /// Builds `points` for a body. `component`: per node, of the visibility graph.
+  Galerkin(const Body& body, std::span<const std::uint32_t> component, MaterialPoints& points);
   /// Records what a split has changed, for rebuild_changed(). `old_position`: of moved nodes,
   /// before they moved.
   void mark_changed(const Body& body, const BodyDelta& delta, std::span<const Vec3> old_position);
   /// True if changes have been marked since the last rebuild.
   bool has_changes() const { return !faces_.empty() || !supports_.empty(); }
   /// Recomputes points whose cell, support or lines of sight the marked changes touch. The result
-  /// equals that of a build from scratch, bit for bit. `wants_values`: whether PointChanges::valued
-  /// is to have the point at a position; called by several threads.
-  PointChanges rebuild_changed(const Body& body, MaterialPoints& points,
+  /// equals that of a build from scratch, bit for bit. `component`: per node, after the changes.
+  /// `wants_values`: whether PointChanges::valued is to have the point at a position; called by
+  /// several threads.
+  PointChanges rebuild_changed(const Body& body, std::span<const std::uint32_t> component, MaterialPoints& points,
                                const std::function<bool(const Vec3&)>& wants_values);
 
  private:

@@ -314,7 +314,7 @@ void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& c
   for (Candidate& c : candidates)
     if (c.plain.value.empty()) tasks.push_back({&c.copy, &c.plain, &points.blocks[c.block], c.point, true});
   const VisibilityChanges no_changes({}, {}, body.nodes.size());
-  if (!tasks.empty()) compute_supports(body, std::move(tasks), nullptr, &no_changes);
+  if (!tasks.empty()) compute_supports(body, std::move(tasks), nullptr, &no_changes, component);
   const Shapes shapes{body, box_of_node_, boxes_, anchors_, component};
   parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)

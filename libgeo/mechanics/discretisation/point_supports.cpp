@@ -1,9 +1,13 @@
 // Each point tries the support factors in turn until it sees enough nodes, with a well-conditioned
 // moment matrix and no steep shape function. Exact segment–triangle tests decide which nodes it
 // sees; after a cut, only where a changed face touches the line of sight, or the node has changed.
+//
+// Each piece of material is one component of the visibility graph. So the first node that a point
+// sees names the component of all others.
 #include "mechanics/discretisation/point_supports.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "body/incremental_cache.h"
@@ -13,7 +17,8 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its support: a linear basis needs 4
+constexpr std::size_t least_nodes = 4;   // that determine a linear field
+constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its support
 constexpr double ill_conditioned = 500;  // and so does one with a larger condition number; larger: fewer are widened
 // So does a point from which a face hides nodes, if a shape gradient is steeper than this, in units
 // of 1 / support radius (docs/decisions/061).
@@ -29,6 +34,31 @@ bool is_on_face(const Complex& surface, const Vec3& p) {
     return segment_meets_triangle(p, p, a, b, c);
   });
 }
+
+// The component of each node, and the number of nodes in each component.
+class NodeComponents {
+ public:
+  explicit NodeComponents(std::span<const std::uint32_t> of_node) : of_node_(of_node) {
+    for (const auto c : of_node) {
+      if (c >= size_.size()) size_.resize(c + 1, 0);
+      ++size_[c];
+    }
+  }
+  // The component of the first node that is not hidden; none where all are, or where components are
+  // unknown.
+  std::optional<std::uint32_t> seen(std::span<const std::uint32_t> nodes, std::span<const std::uint8_t> hidden) const {
+    if (of_node_.empty()) return {};
+    const auto first = std::find(hidden.begin(), hidden.end(), 0);
+    if (first == hidden.end()) return {};
+    return of_node_[nodes[static_cast<std::size_t>(first - hidden.begin())]];
+  }
+  std::size_t size(std::uint32_t component) const { return size_[component]; }
+  bool holds(std::uint32_t component, std::uint32_t node) const { return of_node_[node] == component; }
+
+ private:
+  std::span<const std::uint32_t> of_node_;
+  std::vector<std::uint32_t> size_;
+};
 
 // Tasks of neighbouring points, with the nodes and fronts that they share.
 struct Batch {
@@ -51,27 +81,37 @@ struct Batch {
   }
 
   void compute(const Body& body, std::span<const double> factors, const Occluders& occluders,
-               const VisibilityChanges* changes) {
+               const VisibilityChanges* changes, const NodeComponents& components) {
     for (const FrontEdge& e : occluders.fronts)
       if (const Vec3 middle = 0.5 * (e.a + e.b); influence.grown((e.b - e.a).norm()).meets({middle, middle}))
         fronts.push_back(e);
     Scratch scratch;
-    for (const SupportTask& task : tasks)
-      if (std::none_of(factors.begin(), factors.end(), [&](double factor) {
-            return compute({body, task, factor, occluders.faces, changes}, scratch);
-          }))
-        deficient.push_back(task);
+    for (const SupportTask& task : tasks) {
+      bool enough = false, few = false;
+      for (std::size_t k = 0; k < factors.size() && !enough; ++k) {
+        // With too few nodes in the component no factor is enough: the last one decides.
+        if (few) k = factors.size() - 1;
+        enough = compute({body, task, factors[k], occluders.faces, changes, components}, scratch);
+        few = scratch.component && components.size(*scratch.component) < enough_nodes;
+      }
+      if (!enough) deficient.push_back(task);
+    }
   }
 
  private:
+  // Knowledge of paths to a node round a front. `lost`: there was none, and there is none unless a
+  // face has changed near it. `none`: there is none, or none that matters.
+  enum class Path : std::uint8_t { unknown, lost, none };
   struct Scratch {
     std::vector<std::uint32_t> nodes;
     std::vector<Vec3> positions;
     std::vector<std::uint8_t> hidden;
     std::vector<SupportNode> seen;
-    std::vector<std::uint8_t> is_known, touched, had_no_path;  // the last: and still has none, if it is hidden
+    std::vector<std::uint8_t> is_known, touched;
+    std::vector<Path> path;  // of hidden nodes
     std::vector<std::uint32_t> unknown;
     std::vector<Vec3> ends;
+    std::optional<std::uint32_t> component;  // of the nodes that the point sees straight ahead, if any
   };
   // A point at one factor of the support radii.
   struct Trial {
@@ -80,6 +120,7 @@ struct Batch {
     double factor;
     const TriangleBvh& faces;
     const VisibilityChanges* changes;
+    const NodeComponents& components;
   };
 
   // Whether what the point saw before is known, and may be true still.
@@ -93,7 +134,7 @@ struct Batch {
   // Marks the nodes that the point saw or did not see before, in `hidden` as it was then. A node
   // within the same support had no path round a front where it was not seen.
   static void recall(const Trial& trial, Scratch& scratch) {
-    const auto& [body, task, factor, faces, changes] = trial;
+    const auto& [body, task, factor, faces, changes, components] = trial;
     const PointBlock& block = *task.before;
     const MaterialPoint& before = block.points[task.point_before];
     auto entry = block.entry_begin[task.point_before];
@@ -106,17 +147,29 @@ struct Batch {
       scratch.is_known[q] =
           !changes->has_changed(j) && (was_seen || (scratch.positions[q] - before.position).norm() < support);
       scratch.hidden[q] = !was_seen || block.entry_bent[entry];
-      scratch.had_no_path[q] = scratch.is_known[q] && !was_seen && factor == support_factors[before.widenings];
+      if (scratch.is_known[q] && !was_seen && factor == support_factors[before.widenings]) scratch.path[q] = Path::lost;
     }
   }
 
-  // Sets `hidden` for each node.
+  // Sets `hidden`, `path` and `component`.
   static void find_hidden(const Trial& trial, Scratch& scratch) {
-    const auto& [body, task, factor, faces, changes] = trial;
+    find_hidden_straight(trial, scratch);
+    scratch.component = trial.components.seen(scratch.nodes, scratch.hidden);
+    if (scratch.component) {
+      const bool singular = trial.components.size(*scratch.component) < least_nodes;
+      for (std::size_t q = 0; q < scratch.nodes.size(); ++q)
+        if (singular || !trial.components.holds(*scratch.component, scratch.nodes[q])) scratch.path[q] = Path::none;
+    }
+    forget_paths(trial, scratch);
+  }
+
+  // Sets `hidden` for each node.
+  static void find_hidden_straight(const Trial& trial, Scratch& scratch) {
+    const auto& [body, task, factor, faces, changes, components] = trial;
     const Vec3& x = task.point->position;
     const std::size_t n = scratch.nodes.size();
     scratch.hidden.assign(n, 0);
-    scratch.had_no_path.assign(n, 0);
+    scratch.path.assign(n, Path::unknown);
     if (faces.empty()) return;
     if (!is_recalled(trial)) return faces.blocks(x, scratch.positions, scratch.hidden.data());
     scratch.is_known.assign(n, 0), scratch.touched.assign(n, 0), scratch.unknown.clear(), scratch.ends.clear();
@@ -128,19 +181,18 @@ struct Batch {
     scratch.touched.assign(scratch.ends.size(), 0);
     faces.blocks(x, scratch.ends, scratch.touched.data());
     for (std::size_t k = 0; k < scratch.unknown.size(); ++k) scratch.hidden[scratch.unknown[k]] = scratch.touched[k];
-    forget_paths(trial, scratch);
   }
 
-  // Keeps `had_no_path` only where no changed face may touch a path, and so no new front either.
+  // Keeps `lost` only where no changed face may touch a path, and so no new front either.
   static void forget_paths(const Trial& trial, Scratch& scratch) {
-    const auto& [body, task, factor, faces, changes] = trial;
-    if (std::find(scratch.had_no_path.begin(), scratch.had_no_path.end(), 1) == scratch.had_no_path.end()) return;
+    const auto& [body, task, factor, faces, changes, components] = trial;
+    if (std::find(scratch.path.begin(), scratch.path.end(), Path::lost) == scratch.path.end()) return;
     const Vec3& x = task.point->position;
     const auto near = changes->faces_near(x, task.before->points[task.point_before].influence_radius);
     for (std::size_t q = 0; q < scratch.nodes.size(); ++q)
-      if (scratch.had_no_path[q])
-        scratch.had_no_path[q] =
-            !changes->meet_bent_paths(x, scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]], near);
+      if (scratch.hidden[q] && scratch.path[q] == Path::lost &&
+          changes->meet_bent_paths(x, scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]], near))
+        scratch.path[q] = Path::unknown;
   }
 
   static double largest_support(const Trial& trial, const Scratch& scratch) {
@@ -157,7 +209,7 @@ struct Batch {
 
   // True if the point sees enough nodes, and its shape functions are usable.
   bool compute(const Trial& trial, Scratch& scratch) const {
-    const auto& [body, task, factor, faces, changes] = trial;
+    const auto& [body, task, factor, faces, changes, components] = trial;
     MaterialPoint& point = *task.point;
     ShapeGradients& shape = *task.shape;
     const Vec3& x = point.position;
@@ -178,7 +230,7 @@ struct Batch {
       // lengths.
       point.influence_radius =
           std::max(point.influence_radius, scratch.hidden[q] ? 0.5 * (straight + support) : straight);
-      if (scratch.hidden[q] && scratch.had_no_path[q]) continue;
+      if (scratch.hidden[q] && scratch.path[q] != Path::unknown) continue;
       const auto node =
           scratch.hidden[q] ? diffracted_support(x, y, support, near, faces) : direct_support(x, y, support);
       if (!node) continue;
@@ -290,7 +342,8 @@ Vec3 moved_off_faces(const Body& body, const Vec3& p) {
 }
 
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders,
-                      const VisibilityChanges* changes) {
+                      const VisibilityChanges* changes, std::span<const std::uint32_t> component) {
+  const NodeComponents components(component);
   const double largest_radius = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
   // Two passes: most points need no wider support, so the first pass queries small neighbourhoods.
   const std::span all(support_factors);
@@ -302,7 +355,7 @@ void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Oc
     const Occluders near = occluders ? Occluders() : near_occluders(body.surface, batches);
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b)
-        batches[b].compute(body, factors, occluders ? *occluders : near, changes);
+        batches[b].compute(body, factors, occluders ? *occluders : near, changes, components);
     });
     std::vector<SupportTask> deficient;
     for (const Batch& batch : batches)

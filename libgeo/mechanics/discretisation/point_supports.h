@@ -71,8 +71,11 @@ struct SupportTask {
 /// Computes the shape gradients, and all members of the points except volumes. Consecutive tasks
 /// should be near each other. `occluders`: those of the whole surface; null: nearby ones are
 /// queried. `changes`: since the blocks `before` of the tasks; lines of sight that they do not
-/// touch are not tested again, with the same result. Null: all are tested.
+/// touch are not tested again, with the same result. Null: all are tested. `component`: per node,
+/// of the visibility graph. A point sees nodes of one component only, so no paths to others are
+/// tried, and points of components with few nodes try fewer factors, with the same result. Empty:
+/// all are tried.
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders = nullptr,
-                      const VisibilityChanges* changes = nullptr);
+                      const VisibilityChanges* changes = nullptr, std::span<const std::uint32_t> component = {});
 
 }  // namespace geo

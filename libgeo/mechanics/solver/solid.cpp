@@ -34,7 +34,7 @@ Solid::Solid(const Body& body, Materials materials)
   State no_motion;
   d.update_nodes(body.nodes, body.graph, NodeId(body.nodes.size()), {}, all_nodes(body.nodes.size()), no_motion);
   if (d.materials.discretisation() == Discretisation::galerkin) {
-    d.galerkin.emplace(body, d.points);
+    d.galerkin.emplace(body, d.component, d.points);
     d.points.set_materials(d.materials);
     d.build_preconditioner_levels();
   } else {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
+#include "cases.h"
 #include "mechanics/bodies.h"
 
 using namespace geo;
@@ -16,12 +17,12 @@ struct Supported {
 };
 
 std::vector<Supported> supports(const Body& body, const std::vector<Vec3>& positions,
-                                const Occluders* occluders = nullptr) {
+                                const Occluders* occluders = nullptr, std::span<const std::uint32_t> component = {}) {
   std::vector<Supported> all(positions.size());
   std::vector<SupportTask> tasks;
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i].point.position = positions[i], tasks.push_back({&all[i].point, &all[i].shape});
-  compute_supports(body, tasks, occluders);
+  compute_supports(body, tasks, occluders, nullptr, component);
   return all;
 }
 
@@ -105,4 +106,44 @@ TEST_CASE("points beside a crack have no steep shape functions while their suppo
   }
   CHECK(steep > 30);
   CHECK(widest < steep);
+}
+
+TEST_CASE("components of the graph leave the supports of points as they are", "[supports]") {
+  std::size_t few = 0, bent = 0, singular = 0;
+  const auto [first, count] = seeds(30);
+  for (int n = 0; n < count; ++n) {
+    const std::uint64_t seed = first + static_cast<std::uint64_t>(n);
+    INFO("seed " << seed);
+    Random random(seed);
+    Body body = block_body({1, 1, 1}, 0.25);
+    // Slabs, some of them with few nodes, and cuts that end within the block.
+    for (int cut = 1; cut <= 6; ++cut) {
+      const double x = random.uniform(0.02, 0.98), tilt = random.uniform(-0.1, 0.1);
+      const Vec3 a(x, -0.2, 1.1), b(x + tilt, 1.2, 1.1), step(random.uniform(-0.05, 0.05), 0, -0.31);
+      auto front = begin_front(blade_at(a, b, step, 0, 5), false, cut);
+      const int steps = random.uniform(0, 1) < 0.6 ? 4 : 2;
+      for (int k = 1; k <= steps; ++k) split(body, front, blade_at(a, b, step, k, 5));
+    }
+    std::vector<std::uint32_t> component;
+    const std::uint32_t components = body.graph.components(component);
+    for (std::uint32_t c = 0; c < components; ++c) few += std::count(component.begin(), component.end(), c) < 8;
+    const auto positions = random_positions(random, 200);
+    const auto expected = supports(body, positions), found = supports(body, positions, nullptr, component);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const auto &e = expected[i], &f = found[i];
+      CHECK(f.shape.nodes == e.shape.nodes);
+      CHECK(f.shape.gradient == e.shape.gradient);
+      CHECK(f.shape.bent == e.shape.bent);
+      CHECK(f.point.quality == e.point.quality);
+      CHECK(f.point.widenings == e.point.widenings);
+      CHECK(f.point.occluded == e.point.occluded);
+      CHECK(f.point.influence_radius == e.point.influence_radius);
+      bent += std::count(e.shape.bent.begin(), e.shape.bent.end(), 1) > 0;
+      singular += e.point.quality == MomentQuality::singular;
+    }
+  }
+  if (count < 30) return;
+  CHECK(few > 10);
+  CHECK(bent > 300);
+  CHECK(singular > 30);
 }

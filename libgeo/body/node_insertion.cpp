@@ -1,6 +1,6 @@
 // New nodes are offset samples of crack faces, kept if they see their face and no node nearer than
-// 0.6 spacings. All nodes that see a new one give it volume. Debris is decided by the eigenvalues of Σ x xᵀ
-// over the neighbours.
+// 0.6 spacings. The nearest nodes that see a new one give it volume. Debris is decided by the
+// eigenvalues of Σ x xᵀ over the neighbours.
 #include "body/node_insertion.h"
 #include "body/incremental_cache.h"
 
@@ -27,17 +27,17 @@ void set_original_nodes(Body& body, std::uint32_t count) {
 
 namespace {
 
-// Each giver j keeps (1 − α) v_j, with α = s³ Σ (v_j / s_j³) / ((k + 1) Σ v_j) for k givers, at most
-// a half: volumes in proportion to the cubes of the spacings stay so. What is given is a multiple of
-// 2⁻⁴⁰ of the largest volume, so that no sum or difference is rounded.
+// Each giver keeps (1 − α) of its volume: α = c s³ / (V + c s³) for the volume V of all givers and
+// their mean c of volume over cubed spacing, at most a half. So volumes in proportion to the cubes
+// of spacings stay so. Multiples of 2⁻⁴⁰ of the largest volume are given: no sum is rounded.
 double take_volume(NodeSet& nodes, double spacing, std::span<const std::uint32_t> givers) {
   double sum = 0, density = 0, largest = 0;
   for (const auto j : givers) {
     const double v = nodes.volume[j];
     sum += v, density += v / std::pow(nodes.spacing[j], 3), largest = std::max(largest, v);
   }
-  const double share = std::min(0.5, std::pow(spacing, 3) * density / (double(givers.size() + 1) * sum)),
-               unit = std::ldexp(1.0, std::ilogb(largest) - 40);
+  const double wanted = std::pow(spacing, 3) * density / double(givers.size()),
+               share = std::min(0.5, wanted / (sum + wanted)), unit = std::ldexp(1.0, std::ilogb(largest) - 40);
   double taken = 0;
   for (const auto j : givers) {
     const double given = unit * std::floor(share * nodes.volume[j] / unit);
@@ -46,12 +46,15 @@ double take_volume(NodeSet& nodes, double spacing, std::span<const std::uint32_t
   return taken;
 }
 
+// Half of the volume: exact, too.
+double take_half(NodeSet& nodes, NodeId giver) { return nodes.volume[giver.index()] *= 0.5; }
+
 }  // namespace
 
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers) {
   const NodeId id(body.nodes.size());
   NodeSet& nodes = body.nodes;
-  const double volume = take_volume(nodes, spacing, givers.empty() ? std::span(&donor.value, 1) : givers);
+  const double volume = givers.empty() ? take_half(nodes, donor) : take_volume(nodes, spacing, givers);
   nodes.position.push_back(x);
   nodes.spacing.push_back(spacing);
   nodes.radius.push_back(double(nodes.radius[donor.index()]));
@@ -132,7 +135,8 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
     const auto seen_before =
         visible.empty() ? visible_nodes(body, s.position, nearest, options.fresh) : std::vector<std::uint32_t>();
     const NodeId donor(!visible.empty() ? visible[0] : !seen_before.empty() ? seen_before[0] : nearest[0]);
-    const NodeId node = insert_node(body, s.position, donor, s.spacing, visible);
+    const NodeId node = options.spacing == 0 ? insert_node(body, s.position, donor, s.spacing, visible)
+                                             : insert_node(body, s.position, donor, s.spacing);
     if (options.spacing == 0 && !visible.empty()) {
       // In proportion to the spacing and wide enough for a dozen neighbours, as the sampling makes
       // it.

@@ -16,9 +16,9 @@ using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
 /// sets the bounds that depend on them.
 void set_original_nodes(Body& body, std::uint32_t count);
 
-/// Appends a node at x with the support radius of node `donor`. It takes volume from each of
-/// `givers`, from the donor where there are none, in proportion to theirs; the sum does not change.
-/// Returns its id.
+/// Appends a node at x with the support radius of node `donor`. Each of `givers` gives it the same
+/// share of its volume; without givers, the donor gives half. The sum does not change. Returns its
+/// id.
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers = {});
 
 /// Options of insert_nodes_near().

@@ -149,9 +149,9 @@ void add_construction(Solids& solid) {
             update(self, body, delta, state, true);
           },
           py::arg("body"), py::arg("delta"), py::arg("state"),
-          "Updates the solid and state after a change of the body, delta. New nodes take their donors' affine motion\n"
-          "and material; momentum of each component is restored. Raises InputError where delta is not the body's last\n"
-          "change, or changes before it were not followed.")
+          "Updates the solid and state after a change of the body, delta. New nodes take the motion of the old nodes\n"
+          "around them, and their donors' material; momentum of each component is restored. Raises InputError where\n"
+          "delta is not the body's last change, or changes before it were not followed.")
       .def(
           "update_nodes",
           [](DeformingSolid& self, Body& body, const BodyDelta& delta, State& state) {

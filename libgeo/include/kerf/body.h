@@ -101,7 +101,7 @@ struct SplitStats {
 struct BodyDelta {
   CrackDelta crack;                                      ///< changes of K
   NodeId first_new_node;                                 ///< nodes from here on are new
-  std::vector<NodeId> donors;                            ///< for each new node: the node whose motion and material it takes
+  std::vector<NodeId> donors;                            ///< for each new node: whose motion and material it takes
   std::vector<NodeId> moved_nodes;                       ///< old nodes moved off a crack face
   std::vector<std::pair<NodeId, double>> resized_nodes;  ///< old nodes with another support radius, and the old radius
   std::vector<NodeId> updated_nodes;              ///< P_update: rows changed; new, moved and resized nodes included

@@ -108,7 +108,7 @@ QuadratureCell make_cell(const RegionTree& tree, const Lattice& lattice, const R
 }
 
 // The exact sum of node volumes in fixed-point arithmetic, which no order of summation changes:
-// inserted nodes halve volumes, which is exact, too. Each term is below 2⁹⁰: 2³⁷ of them fit.
+// inserted nodes take volume exactly, too. Each term is below 2⁹⁰: 2³⁷ of them fit.
 double exact_sum(const std::vector<double>& volumes) {
   int exponent;
   std::frexp(*std::max_element(volumes.begin(), volumes.end()), &exponent);

@@ -21,6 +21,9 @@ struct Momenta {
     mass += m, moment += m * x, linear += m * v, angular += m * x.cross(v);
     inertia += m * (x.squaredNorm() * Mat3::Identity() - x * x.transpose());
   }
+  friend Momenta operator+(const Momenta& a, const Momenta& b) {
+    return {a.mass + b.mass, a.moment + b.moment, a.linear + b.linear, a.angular + b.angular, a.inertia + b.inertia};
+  }
 };
 
 // A velocity field.
@@ -33,7 +36,7 @@ struct RigidVelocity {
 // about its centre of mass. About a fixed point the angular momentum may change, as mass is
 // redistributed: were that corrected, a component that only travels would begin to turn. A
 // component on a line has no inertia about it and gets no spin about it.
-// A component that took mass from another, or gave it, keeps its mean velocity.
+// A component that took mass from another, or gave it, keeps its mean velocity and spin.
 RigidVelocity correction(const Momenta& before, const Momenta& after) {
   constexpr double rounding = 1e-9;  // of the largest moment of inertia
   const double share = after.mass / before.mass;
@@ -51,42 +54,59 @@ struct MovedNode {
   Vec3 position, velocity;
 };
 
-// Displacement and velocity before a cut at a position in the material: those of node d and its
-// neighbours, each extended by its gradient, averaged by their kernels. One node's gradient alone
-// changes the strain energy of a bent body.
-std::pair<Vec3, Vec3> motion_at(const Vec3& x, std::size_t d, const SolidDiscretisation& before,
-                                const std::vector<double>& radius, const State& state) {
+// Displacement and velocity that node i, new at a cut, had before it: those of its donor d and of
+// the old nodes that it sees, each extended by its gradient, averaged by their kernels. One node's
+// gradient alone changes the strain energy of a bent body. A node far from its donor takes the
+// donor's motion.
+std::pair<Vec3, Vec3> motion_of_new(std::size_t i, std::size_t d, const SolidDiscretisation& before,
+                                    const NodeSet& nodes, const VisibilityGraph& graph, const State& state) {
   const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
+  const Vec3& x = nodes.position[i];
   const auto extended = [&](std::size_t j) {
     const Vec3 offset = x - before.position[j];
     return std::pair<Vec3, Vec3>(u[j] + before.mls.displacement_gradient(j, u) * offset,
                                  v[j] + before.mls.gradient(j, v) * offset);
   };
-  double sum = 0;
-  Vec3 displacement = Vec3::Zero(), velocity = Vec3::Zero();
-  const auto add = [&](std::size_t j) {
-    const double w = kernel((x - before.position[j]).norm(), radius[j]);
-    if (!(w > 0)) return;
+  const auto weight = [&](std::size_t j) { return kernel((x - before.position[j]).norm(), nodes.radius[j]); };
+  auto [displacement, velocity] = extended(d);
+  double sum = weight(d);
+  if (!(sum > 0)) return {displacement, velocity};
+  displacement *= sum, velocity *= sum;
+  for (const NodeId id : graph.edges(NodeId(i))) {
+    const std::size_t j = id.index();
+    if (j == d || j >= before.position.size() || before.mls.quality(j) != MomentQuality::good) continue;
+    const double w = weight(j);
+    if (!(w > 0)) continue;
     const auto [own_displacement, own_velocity] = extended(j);
     sum += w, displacement += w * own_displacement, velocity += w * own_velocity;
-  };
-  add(d);
-  for (const auto j : before.mls[d].neighbors) add(j);
-  return sum > 0 ? std::pair<Vec3, Vec3>(displacement / sum, velocity / sum) : extended(d);
+  }
+  return {displacement / sum, velocity / sum};
 }
 
-// Extends the motion to new nodes from their donors' neighbourhoods and moves that of moved nodes with
+// The old node that a chain of donors ends at.
+std::size_t old_donor(std::size_t node, std::size_t old_count, std::span<const NodeId> donors) {
+  while (node >= old_count) node = donors[node - old_count].index();
+  return node;
+}
+
+// Extends the motion to new nodes from the old nodes around them and moves that of moved nodes with
 // them, by the gradients before the cut. Returns the nodes that moved, ascending.
-std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes, std::size_t old_count,
+std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes,
+                                     const VisibilityGraph& graph, std::size_t old_count,
                                      std::span<const NodeId> donors, std::span<const NodeId> updated, State& state) {
-  std::vector<MovedNode> moved;
-  for (std::size_t i = old_count; i < nodes.size(); ++i) {
-    std::size_t d = donors[i - old_count].index();
-    while (d >= old_count) d = donors[d - old_count].index();
-    const auto [displacement, velocity] = motion_at(nodes.position[i], d, before, nodes.radius, state);
-    state.displacement.push_back(displacement), state.velocity.push_back(velocity);
-    if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[d]));
+  const std::size_t n = nodes.size();
+  std::vector<std::pair<Vec3, Vec3>> motion(n - old_count);
+  parallel_for(motion.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      motion[k] =
+          motion_of_new(old_count + k, old_donor(old_count + k, old_count, donors), before, nodes, graph, state);
+  });
+  for (std::size_t i = old_count; i < n; ++i) {
+    state.displacement.push_back(motion[i - old_count].first), state.velocity.push_back(motion[i - old_count].second);
+    if (!state.acceleration.empty())
+      state.acceleration.push_back(Vec3(state.acceleration[old_donor(i, old_count, donors)]));
   }
+  std::vector<MovedNode> moved;
   for (const NodeId id : updated) {
     const std::size_t i = id.index();
     if (i >= old_count || before.position[i] == nodes.position[i]) continue;
@@ -103,11 +123,7 @@ std::vector<Mat3> rotations_before(const SolidDiscretisation& before, std::size_
                                    std::span<const NodeId> donors, std::span<const NodeId> nodes, const State& state) {
   if (state.displacement.empty()) return {};
   std::vector<std::uint32_t> old;
-  for (const NodeId i : nodes) {
-    std::size_t d = i.index();
-    while (d >= old_count) d = donors[d - old_count].index();
-    old.push_back(static_cast<std::uint32_t>(d));
-  }
+  for (const NodeId i : nodes) old.push_back(static_cast<std::uint32_t>(old_donor(i.index(), old_count, donors)));
   return rotations_at(before.mls, old, state.displacement);
 }
 
@@ -124,31 +140,40 @@ void keep_rotations(const SolidDiscretisation& solid, std::span<const NodeId> up
 }
 
 // Gives each component with new or moved mass the momenta back that it had before. `mass`: per node
-// before the cut.
-void restore_momenta(const SolidDiscretisation& solid, const std::vector<double>& mass,
+// before the cut. A new node in another component than its donor had the donor's motion.
+void restore_momenta(const SolidDiscretisation& solid, const std::vector<double>& mass, std::span<const NodeId> donors,
                      const std::vector<MovedNode>& moved, State& state) {
   const std::vector<std::uint32_t>& component = solid.component;
+  const std::size_t old_count = mass.size();
+  const auto at = [&](std::size_t i) -> Vec3 { return solid.position[i] + state.displacement[i]; };
   std::vector<char> is_stale(solid.components, 0);
-  for (const MovedNode& m : moved) is_stale[component[m.node]] = 1;
-  for (std::size_t i = 0; i < solid.size(); ++i)
-    if (i >= mass.size() || solid.mass[i] != mass[i]) is_stale[component[i]] = 1;
-  std::vector<Momenta> before(solid.components), after(solid.components);
+  std::vector<Momenta> change(solid.components);  // before less after
+  const auto add = [&](std::uint32_t c, double m, const Vec3& x, const Vec3& v) {
+    is_stale[c] = 1, change[c].add(m, x, v);
+  };
   auto next = moved.begin();
-  for (std::size_t i = 0; i < solid.size(); ++i) {
-    const auto c = component[i];
-    if (!is_stale[c]) continue;
-    const Vec3 x = solid.position[i] + state.displacement[i];
-    after[c].add(solid.mass[i], x, state.velocity[i]);
+  for (std::size_t i = 0; i < old_count; ++i) {
     const bool moves = next != moved.end() && next->node == i;
-    if (i < mass.size()) before[c].add(mass[i], moves ? next->position : x, moves ? next->velocity : state.velocity[i]);
+    if (!moves && solid.mass[i] == mass[i]) continue;
+    add(component[i], mass[i], moves ? next->position : at(i), moves ? next->velocity : state.velocity[i]);
+    add(component[i], -solid.mass[i], at(i), state.velocity[i]);
     if (moves) ++next;
   }
+  for (std::size_t i = old_count; i < solid.size(); ++i) {
+    add(component[i], -solid.mass[i], at(i), state.velocity[i]);
+    const std::size_t d = old_donor(i, old_count, donors);
+    if (component[d] == component[i]) continue;
+    add(component[i], solid.mass[i], at(d), state.velocity[d]);
+    add(component[d], -solid.mass[i], at(d), state.velocity[d]);
+  }
+  std::vector<Momenta> after(solid.components);
+  for (std::size_t i = 0; i < solid.size(); ++i)
+    if (is_stale[component[i]]) after[component[i]].add(solid.mass[i], at(i), state.velocity[i]);
   std::vector<RigidVelocity> corrections(solid.components);
   for (std::uint32_t c = 0; c < solid.components; ++c)
-    if (is_stale[c] && before[c].mass > 0) corrections[c] = correction(before[c], after[c]);
+    if (is_stale[c]) corrections[c] = correction(after[c] + change[c], after[c]);
   for (std::size_t i = 0; i < solid.size(); ++i)
-    if (const auto c = component[i]; is_stale[c] && before[c].mass > 0)
-      state.velocity[i] += corrections[c].at(solid.position[i] + state.displacement[i]);
+    if (const auto c = component[i]; is_stale[c]) state.velocity[i] += corrections[c].at(at(i));
 }
 
 }  // namespace
@@ -175,7 +200,7 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
   std::vector<MovedNode> moved;
   const std::vector<double> mass_before = mass;
   const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
-  if (!state.displacement.empty()) moved = extend_motion(*this, nodes, old_count, donors, updated, state);
+  if (!state.displacement.empty()) moved = extend_motion(*this, nodes, graph, old_count, donors, updated, state);
   volume = nodes.volume, spacing = nodes.spacing, position = nodes.position;
   mass.resize(n);
   for (std::size_t i = old_count; i < n; ++i) materials.add_node(donors[i - old_count].index());
@@ -189,7 +214,7 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
                   });
   keep_rotations(*this, updated, rotations, state);
   mls.set_rotations(state.rotation);
-  if (!state.displacement.empty()) restore_momenta(*this, mass_before, moved, state);
+  if (!state.displacement.empty()) restore_momenta(*this, mass_before, donors, moved, state);
 }
 
 }  // namespace geo

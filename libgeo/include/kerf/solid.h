@@ -78,9 +78,9 @@ class Solid {
   Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials);
 
   /// Updates the discretisation and `state` after a split; the result equals a build from scratch,
-  /// bit for bit. New nodes take the motion of the old nodes around them, and their donors' material. Each component
-  /// then gets the rigid motion that restores its linear momentum and its angular momentum about
-  /// its centre of mass. Plastic strain stays with its point.
+  /// bit for bit. New nodes take the motion of the old nodes around them and their donors' material.
+  /// Each component of the graph then gets the rigid motion that restores its linear momentum and
+  /// its angular momentum about its centre of mass. Plastic strain stays with its point.
   void update(const Body& body, const BodyDelta& delta, State& state);
   /// First half of update(), after each split: nodes, their motion and their gradients.
   void update_nodes(const Body& body, const BodyDelta& delta, State& state);

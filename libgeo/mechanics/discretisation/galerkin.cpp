@@ -255,8 +255,7 @@ void Galerkin::mark_changed(const Body& body, const BodyDelta& delta, std::span<
 }
 
 PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::uint32_t> component,
-                                       MaterialPoints& points,
-                                       const std::function<bool(const Vec3&)>& wants_values) {
+                                       MaterialPoints& points, const std::function<bool(const Vec3&)>& wants_values) {
   PointChanges result;
   const auto old_block_begin = block_begin_;
   std::vector<std::uint32_t> old_cell(cells_.cells().size());  // per cell: its old index, or ~0u

@@ -54,28 +54,24 @@ struct MovedNode {
   Vec3 position, velocity;
 };
 
-// Displacement and velocity that node i, new at a cut, had before it: those of its donor d and of
-// the old nodes that it sees, each extended by its gradient, averaged by their kernels. One node's
-// gradient alone changes the strain energy of a bent body. A node far from its donor takes the
-// donor's motion.
-std::pair<Vec3, Vec3> motion_of_new(std::size_t i, std::size_t d, const SolidDiscretisation& before,
-                                    const NodeSet& nodes, const VisibilityGraph& graph, const State& state) {
+// Displacement and velocity before a cut at a position in the material: those of a donor and of its
+// neighbours, each extended by its gradient, averaged by their kernels. One node's gradient alone
+// changes the strain energy of a bent body. Far from the donor, its motion alone counts.
+std::pair<Vec3, Vec3> motion_at(const Vec3& x, std::size_t donor, const SolidDiscretisation& before,
+                                const std::vector<double>& radius, const State& state) {
   const std::vector<Vec3>&u = state.displacement, &v = state.velocity;
-  const Vec3& x = nodes.position[i];
   const auto extended = [&](std::size_t j) {
     const Vec3 offset = x - before.position[j];
     return std::pair<Vec3, Vec3>(u[j] + before.mls.displacement_gradient(j, u) * offset,
                                  v[j] + before.mls.gradient(j, v) * offset);
   };
-  const auto weight = [&](std::size_t j) { return kernel((x - before.position[j]).norm(), nodes.radius[j]); };
-  auto [displacement, velocity] = extended(d);
-  double sum = weight(d);
+  const auto weight = [&](std::size_t j) { return kernel((x - before.position[j]).norm(), radius[j]); };
+  auto [displacement, velocity] = extended(donor);
+  double sum = weight(donor);
   if (!(sum > 0)) return {displacement, velocity};
   displacement *= sum, velocity *= sum;
-  for (const NodeId id : graph.edges(NodeId(i))) {
-    const std::size_t j = id.index();
-    if (j == d || j >= before.position.size() || before.mls.quality(j) != MomentQuality::good) continue;
-    const double w = weight(j);
+  for (const auto j : before.mls[donor].neighbors) {
+    const double w = before.mls.quality(j) == MomentQuality::good ? weight(j) : 0;
     if (!(w > 0)) continue;
     const auto [own_displacement, own_velocity] = extended(j);
     sum += w, displacement += w * own_displacement, velocity += w * own_velocity;
@@ -91,15 +87,14 @@ std::size_t old_donor(std::size_t node, std::size_t old_count, std::span<const N
 
 // Extends the motion to new nodes from the old nodes around them and moves that of moved nodes with
 // them, by the gradients before the cut. Returns the nodes that moved, ascending.
-std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes,
-                                     const VisibilityGraph& graph, std::size_t old_count,
+std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const NodeSet& nodes, std::size_t old_count,
                                      std::span<const NodeId> donors, std::span<const NodeId> updated, State& state) {
   const std::size_t n = nodes.size();
   std::vector<std::pair<Vec3, Vec3>> motion(n - old_count);
   parallel_for(motion.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      motion[k] =
-          motion_of_new(old_count + k, old_donor(old_count + k, old_count, donors), before, nodes, graph, state);
+      motion[k] = motion_at(nodes.position[old_count + k], old_donor(old_count + k, old_count, donors), before,
+                            nodes.radius, state);
   });
   for (std::size_t i = old_count; i < n; ++i) {
     state.displacement.push_back(motion[i - old_count].first), state.velocity.push_back(motion[i - old_count].second);
@@ -200,7 +195,7 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
   std::vector<MovedNode> moved;
   const std::vector<double> mass_before = mass;
   const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
-  if (!state.displacement.empty()) moved = extend_motion(*this, nodes, graph, old_count, donors, updated, state);
+  if (!state.displacement.empty()) moved = extend_motion(*this, nodes, old_count, donors, updated, state);
   volume = nodes.volume, spacing = nodes.spacing, position = nodes.position;
   mass.resize(n);
   for (std::size_t i = old_count; i < n; ++i) materials.add_node(donors[i - old_count].index());

@@ -52,9 +52,9 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
   parallel_invoke([&] { aggregates = Aggregates(position, mls, component, components); },
                   [&] {
                     held.restore(points);
-                   const double reach = HeldMaterial::reach_of(body.nodes);
-                   changes = galerkin->rebuild_changed(body, component, points,
-                                                       [&](const Vec3& x) { return held.is_near(x, reach); });
+                    const double reach = HeldMaterial::reach_of(body.nodes);
+                    changes = galerkin->rebuild_changed(body, component, points,
+                                                        [&](const Vec3& x) { return held.is_near(x, reach); });
                     points.set_materials(materials);
                     inverses.update(subdomains, subdomains.update({position, mls, spacing, points}, changed, changes));
                   });

@@ -1,6 +1,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include <optional>
+
 #include "base/random.h"
 #include "graph/build_graph.h"
 #include "graph/graph_storage.h"
@@ -161,21 +163,36 @@ TEST_CASE("few, coplanar and no neighbours give no NaN") {
   CHECK(state.displacement[16].z() == Approx(-0.5 * 9.81 * 4e-4 * 30).epsilon(1e-6));
 }
 
-TEST_CASE("momentum is conserved through insertion") {
-  Bar b = bar(4, 4, 4, 0.1);
-  Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
-  State state = at_rest(b);
-  Random random(8);
-  for (auto& v : state.velocity) v = random.direction();
-  const Vec3 before = solid.momentum(state);
-  b.nodes.volume[5] *= 0.5;
-  b.nodes.position.push_back(b.nodes.position[5] + Vec3(0.05, 0.03, 0.02));
-  b.nodes.radius.push_back(b.nodes.radius[5]), b.nodes.spacing.push_back(0.2),
-      b.nodes.volume.push_back(b.nodes.volume[5]);
+namespace {
+
+// Appends a node that takes half of the volume of node `donor` and sees the node `sees`, if any.
+void insert_beside(Bar& b, std::uint32_t donor, const Vec3& offset, std::optional<std::uint32_t> sees) {
+  b.nodes.volume[donor] *= 0.5;
+  b.nodes.position.push_back(b.nodes.position[donor] + offset);
+  b.nodes.radius.push_back(double(b.nodes.radius[donor])), b.nodes.spacing.push_back(0.2),
+      b.nodes.volume.push_back(double(b.nodes.volume[donor]));
   b.graph.storage().resize(b.nodes.size());
-  b.graph.storage().add(b.nodes, 5u, 64u);
-  build_neighborhoods(b.nodes, b.graph, TriangleBvh());
-  const std::vector<NodeId> donors{NodeId(5u)}, updated{NodeId(64u)};
-  solid.update(b.nodes, b.graph, NodeId(64u), donors, updated, state);
-  CHECK((solid.momentum(state) - before).norm() < 1e-12 * before.norm());
+  if (sees) b.graph.storage().add(b.nodes, *sees, static_cast<std::uint32_t>(b.nodes.size() - 1));
+}
+
+}  // namespace
+
+TEST_CASE("momentum is conserved through insertion, also into a piece of new nodes alone") {
+  const bool apart = GENERATE(false, true);
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    CAPTURE(apart, seed);
+    Bar b = bar(4, 4, 4, 0.1);
+    Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
+    State state = at_rest(b);
+    Random random(seed);
+    for (auto& v : state.velocity) v = random.direction();
+    const Vec3 before = solid.momentum(state);
+    const auto donor = static_cast<std::uint32_t>(64 * random.uniform());
+    insert_beside(b, donor, {0.05, 0.03, 0.02}, apart ? std::nullopt : std::optional(donor));
+    insert_beside(b, 64, {-0.02, 0.04, 0.01}, 64);
+    build_neighborhoods(b.nodes, b.graph, TriangleBvh());
+    const std::vector<NodeId> donors{NodeId(donor), NodeId(64u)}, updated{NodeId(64u), NodeId(65u)};
+    solid.update(b.nodes, b.graph, NodeId(64u), donors, updated, state);
+    CHECK((solid.momentum(state) - before).norm() < 1e-12 * before.norm());
+  }
 }

@@ -78,7 +78,7 @@ class Solid {
   Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials materials);
 
   /// Updates the discretisation and `state` after a split; the result equals a build from scratch,
-  /// bit for bit. New nodes take the motion of the old nodes around them and their donors' material.
+  /// bit for bit. New nodes take the motion of old nodes around them and their donors' material.
   /// Each component of the graph then gets the rigid motion that restores its linear momentum and
   /// its angular momentum about its centre of mass. Plastic strain stays with its point.
   void update(const Body& body, const BodyDelta& delta, State& state);

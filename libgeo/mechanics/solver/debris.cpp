@@ -22,13 +22,8 @@ Mat3 rotation_of(const Mat3& fit, double size, const Mat3& last) {
 // Per component: whether a material point has strain in it.
 std::vector<char> strained_components(const SolidDiscretisation& solid) {
   std::vector<char> strained(solid.components, 0);
-  for (const PointBlock& block : solid.points.blocks) {
-    const auto of = [&](std::uint32_t entry) -> char& {
-      return strained[solid.component[block.nodes[block.entry_node[entry]]]];
-    };
-    for (std::size_t i = 0; i + 1 < block.entry_begin.size(); ++i)
-      for (auto q = block.entry_begin[i]; q < block.entry_begin[i + 1]; ++q) of(q) = 1;
-  }
+  for (const PointBlock& block : solid.points.blocks)
+    for (const auto k : block.entry_node) strained[solid.component[block.nodes[k]]] = 1;
   return strained;
 }
 

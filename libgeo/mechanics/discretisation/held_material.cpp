@@ -274,10 +274,9 @@ struct HeldMaterial::Candidate {
   std::optional<ShapeGradients> held;
 };
 
-std::vector<HeldMaterial::Candidate> HeldMaterial::candidates_in(const Near& near, const Body& body,
+std::vector<HeldMaterial::Candidate> HeldMaterial::candidates_in(const Near& near, double reach,
                                                                  const MaterialPoints& points,
                                                                  PointChanges* changes) const {
-  const double reach = reach_of(body.nodes);
   std::vector<Candidate> candidates;
   // Both lists are ascending.
   std::span<std::pair<std::uint32_t, ShapeGradients>> valued;
@@ -302,10 +301,11 @@ std::vector<HeldMaterial::Candidate> HeldMaterial::candidates_in(const Near& nea
 // Lines of sight are those of the plain basis, which the blocks know.
 void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const Near> blocks,
                            PointChanges* changes, MaterialPoints& points) {
+  const double reach = reach_of(body.nodes);
   std::vector<Candidate> candidates;
   std::vector<std::size_t> first(1, 0);  // per block its first candidate; one more at the end
   for (const Near& near : blocks) {
-    auto of_block = candidates_in(near, body, points, changes);
+    auto of_block = candidates_in(near, reach, points, changes);
     candidates.insert(candidates.end(), std::make_move_iterator(of_block.begin()),
                       std::make_move_iterator(of_block.end()));
     first.push_back(candidates.size());

@@ -64,7 +64,7 @@ class HeldMaterial {
   struct Candidate;
 
   std::vector<Anchors> anchors_of(const Body& body, const std::vector<std::uint32_t>& component) const;
-  std::vector<Candidate> candidates_in(const Near& near, const Body& body, const MaterialPoints& points,
+  std::vector<Candidate> candidates_in(const Near& near, double reach, const MaterialPoints& points,
                                        PointChanges* changes) const;
   void replace(const Body& body, const std::vector<std::uint32_t>& component, std::span<const Near> blocks,
                PointChanges* changes, MaterialPoints& points);

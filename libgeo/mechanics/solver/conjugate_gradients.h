@@ -22,7 +22,9 @@ struct NewtonDirection {
   std::vector<double> residual;  ///< per island: largest preconditioned residual, in spacings
 };
 
-/// Solves H step = force for the active islands; the entries of others stay. An island ends
+/// Solves H step = force for the active islands; the entries of others stay. In the
+/// first direction of a time step, an island of which the coarse level has most of r · M⁻¹ r moves
+/// along the coarse correction alone at first, which counts as an iteration. An island ends
 /// - when its preconditioned residual is less than half the accuracy, after one iteration at least;
 ///   in the first direction of a time step √(r · M⁻¹ r) must also have fallen to √0.3 ≈ 0.55 of its
 ///   initial value, or bodies would never quite come to rest;

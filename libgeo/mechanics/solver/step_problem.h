@@ -22,12 +22,12 @@ struct StepProblem {
     return v.squaredNorm() / (solid.spacing[node] * solid.spacing[node]);
   }
   /// The accuracy, in spacings, of an island whose nodes forces have moved by up to `correction`
-  /// spacings from where inertia or the prediction took them. The error of the time step grows with
-  /// the correction, so beyond one spacing the accuracy is relative to it. A hundredth of a spacing
-  /// is the most that it becomes so (docs/decisions/087).
+  /// spacings from where inertia or the prediction took them. Backward Euler's error in a time step
+  /// is about half of the correction, so beyond a tenth of a spacing the accuracy is relative to
+  /// it. A hundredth of a spacing is the most that it becomes so (docs/decisions/065, 087).
   double accuracy_after(double correction) const {
-    constexpr double loose_accuracy = 0.01;
-    return std::max(accuracy, std::min(accuracy * correction, loose_accuracy));
+    constexpr double unit_correction = 0.1, loose_accuracy = 0.01;
+    return std::max(accuracy, std::min(accuracy * correction / unit_correction, loose_accuracy));
   }
   /// Tolerance of |d| (|d| + moved), in squared spacings, an estimate of the error that a direction
   /// d leaves: the Newton error grows with |d|², and with |d| times the distance moved since the

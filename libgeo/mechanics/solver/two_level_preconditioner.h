@@ -24,6 +24,8 @@ class TwoLevelPreconditioner {
   void apply(const ActiveIslands& active, const std::vector<Vec3>& r);
   /// z at a node.
   Vec3 at(std::size_t node) const { return schwarz_->at(node) + coarse_->at(node); }
+  /// The part of z that is in the coarse space, at a node.
+  Vec3 coarse_at(std::size_t node) const { return coarse_->at(node); }
 
  private:
   void build_coarse(const IncrementalPotential& potential, const std::vector<Vec3>& u,

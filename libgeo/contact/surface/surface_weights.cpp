@@ -139,6 +139,7 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
         sums.add(i, w / total);
         if (mls.quality(i.index()) != MomentQuality::good)
           arms_[v].push_back({i.value, w / total * (x - body.nodes.position[i.index()])});
+        if (w == 0) continue;
         gradient.clear();
         solid.gradient_stencil(i, gradient);
         for (const auto& [j, g] : gradient) sums.add(j, w / total * g.dot(x - body.nodes.position[i.index()]));

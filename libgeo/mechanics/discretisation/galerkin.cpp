@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -30,33 +29,46 @@ class Changes {
   }
   /// False if the changes touch no point in the box whose influence radius is at most `radius`.
   bool near(const Box3& points, double radius) const { return points.grown(radius).meets(bounds_); }
-  /// Changed supports that may hold a point in the box, widened or not.
-  std::vector<std::pair<Vec3, double>> supports(const Box3& points) const {
-    std::vector<std::pair<Vec3, double>> near;
+  /// Changed supports that may hold a point in the box, widened or not, and faces that lines of
+  /// sight of such a point may touch, bent ones included.
+  struct Local {
+    std::vector<std::pair<Vec3, double>> supports;
+    std::vector<std::uint32_t> faces;
+    bool empty() const { return supports.empty() && faces.empty(); }
+  };
+  /// The changes near a box of points. `radius`: their largest influence radius.
+  Local local(const Box3& points, double radius) const {
+    Local near;
     for (const auto& s : supports_)
-      if (points.grown(support_factors.back() * s.second).meets({s.first, s.first})) near.push_back(s);
+      if (points.grown(support_factors.back() * s.second).meets({s.first, s.first})) near.supports.push_back(s);
+    visibility_.faces_near(points, radius, near.faces);
     return near;
   }
   /// For compute_supports().
   const VisibilityChanges& visibility() const { return visibility_; }
-  /// True if faces, or `supports`, touch anything that decides a point's shape gradients: the nodes
-  /// that support it, the segments and bent paths to them, the segment from its intended position.
+  /// True if `local` changes touch anything that decides a point's shape gradients: the nodes that
+  /// support it, the segments and bent paths to them, the segment from its intended position.
   /// `nodes_near`: returns all nodes that may support the point, and others.
   template <class NodesNear>
-  bool affect(const Body& body, std::span<const std::pair<Vec3, double>> supports, const Vec3& intended,
-              const PointBlock& block, std::size_t point, const NodesNear& nodes_near) const {
+  bool affect(const Body& body, const Local& local, const Vec3& intended, const PointBlock& block, std::size_t point,
+              const NodesNear& nodes_near) const {
     const MaterialPoint& p = block.points[point];
     const double factor = support_factors[p.widenings];
-    if (std::any_of(supports.begin(), supports.end(),
+    if (std::any_of(local.supports.begin(), local.supports.end(),
                     [&](const auto& s) { return (s.first - p.position).norm() < factor * s.second; }))
       return true;
-    const std::vector<std::uint32_t> near = visibility_.faces_near(p.position, p.influence_radius);
+    const std::vector<std::uint32_t> near = visibility_.faces_near(p.position, p.influence_radius, local.faces);
     if (near.empty()) return false;
     std::vector<std::uint32_t> nodes;
+    if (p.occluded || p.quality == MomentQuality::singular) {
+      for (const auto j : nodes_near())
+        if ((body.nodes.position[j] - p.position).norm() < factor * body.nodes.radius[j]) nodes.push_back(j);
+    } else {  // it sees all nodes that support it, and no other support has changed
+      for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
+        nodes.push_back(block.nodes[block.entry_node[q]]);
+    }
     std::vector<Vec3> ends{intended};
-    for (const auto j : nodes_near())
-      if ((body.nodes.position[j] - p.position).norm() < factor * body.nodes.radius[j])
-        nodes.push_back(j), ends.push_back(body.nodes.position[j]);
+    for (const auto j : nodes) ends.push_back(body.nodes.position[j]);
     std::vector<std::uint8_t> touched(ends.size(), 0);
     visibility_.faces().blocks(p.position, ends, touched.data());
     if (std::find(touched.begin(), touched.end(), 1) != touched.end()) return true;
@@ -114,18 +126,20 @@ std::vector<std::uint32_t> same_cells(std::span<const QuadratureCell> now, std::
   return same;
 }
 
-// All nodes that may support one of the points, and others; each is within its influence radius.
-std::vector<std::uint32_t> supporting_nodes(const Body& body, std::span<const PointBlock::Source> points) {
+// A box that holds the points that there were, and bounds of their influence radii and support
+// factors.
+struct PointGroup {
+  explicit PointGroup(std::span<const PointBlock::Source> points) {
+    for (const auto& [block, point, shape] : points) {
+      if (!block) continue;
+      const MaterialPoint& p = block->points[point];
+      box.add(p.position), radius = std::max(radius, p.influence_radius);
+      factor = std::max(factor, support_factors[p.widenings]);
+    }
+  }
   Box3 box;
-  double radius = 0;
-  for (const auto& [block, point, shape] : points)
-    if (block) box.add(block->points[point].position), radius = std::max(radius, block->points[point].influence_radius);
-  std::vector<std::uint32_t> nodes;
-  body.cache->grid.within(body.nodes.position, box.center(),
-                          (0.5 * (box.hi - box.lo).norm() + radius) * (1 + 8 * std::numeric_limits<double>::epsilon()),
-                          nodes);
-  return nodes;
-}
+  double radius = 0, factor = 1;
+};
 
 // A block after splits: the source of each point among the old blocks, and the points to recompute.
 struct BlockUpdate {
@@ -141,9 +155,9 @@ struct BlockUpdate {
     std::span<const std::size_t> block_begin;
     std::span<const PointBlock> blocks;
   };
-  // `old_cell`: per cell of the block, its old index or ~0u. `radius`: the largest influence
-  // radius.
-  BlockUpdate(const Body& body, const Changes& changes, double radius, std::span<const QuadratureCell> cells,
+  // `old_cell`: per cell of the block, its old index or ~0u. `largest_node`: the largest radius of
+  // a node.
+  BlockUpdate(const Body& body, const Changes& changes, double largest_node, std::span<const QuadratureCell> cells,
               std::span<const std::uint32_t> old_cell, const Old& old) {
     const auto first = old.block_begin;
     const auto block_of = [&](std::uint32_t cell) {
@@ -155,27 +169,27 @@ struct BlockUpdate {
       for (std::size_t c = 1; c < cells.size() && same; ++c) same = old_cell[c] == old_cell[0] + c;
       if (same) same_block = o;
     }
-    if (same_block != none && !changes.near(old.blocks[same_block].box, radius)) return;
+    if (same_block != none && !changes.near(old.blocks[same_block].box, support_factors.back() * largest_node)) return;
     sources.resize(4 * cells.size());
-    Box3 box;
     for (std::uint32_t c = 0; c < cells.size(); ++c) {
       if (old_cell[c] == ~0u) continue;
       const std::size_t from = same_block != none ? same_block : block_of(old_cell[c]);
-      box.add(old.blocks[from].box);
       for (std::uint32_t i = 0; i < 4; ++i)
         sources[4 * c + i] = {&old.blocks[from], 4 * (old_cell[c] - first[from]) + i};
     }
-    const auto supports = changes.supports(box);
     constexpr std::size_t points_per_query = 32;  // consecutive points are near each other
     for (std::uint32_t begin = 0; begin < sources.size(); begin += points_per_query) {
       const auto group = std::span(sources).subspan(begin, std::min(points_per_query, sources.size() - begin));
+      const PointGroup bounds(group);
+      const Changes::Local local = changes.local(bounds.box, bounds.radius);
       std::optional<std::vector<std::uint32_t>> nodes;
       const auto nodes_near = [&]() -> const std::vector<std::uint32_t>& {
-        return nodes ? *nodes : nodes.emplace(supporting_nodes(body, group));
+        return nodes ? *nodes : nodes.emplace(supporting_nodes(body, bounds.box, bounds.factor, largest_node));
       };
       for (std::uint32_t k = 0; k < group.size(); ++k)
         if (const auto& [block, point, shape] = group[k];
-            !block || changes.affect(body, supports, cells[(begin + k) / 4].point[k % 4], *block, point, nodes_near))
+            !block || (!local.empty() &&
+                       changes.affect(body, local, cells[(begin + k) / 4].point[k % 4], *block, point, nodes_near)))
           stale.push_back(begin + k);
     }
     if (same_block != none && stale.empty()) return;
@@ -273,11 +287,11 @@ PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::ui
   std::vector<PointBlock> old(block_begin_.size() - 1);
   old.swap(points.blocks);
   std::vector<BlockUpdate> updates(points.blocks.size());
-  const double radius = support_factors.back() * *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
+  const double largest_node = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
   parallel_for(updates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
-      updates[b] = BlockUpdate(body, changes, radius, cells_of(b), {&old_cell[block_begin_[b]], cells_of(b).size()},
-                               {old_block_begin, old});
+      updates[b] = BlockUpdate(body, changes, largest_node, cells_of(b),
+                               {&old_cell[block_begin_[b]], cells_of(b).size()}, {old_block_begin, old});
   });
   std::vector<SupportTask> tasks;
   for (BlockUpdate& r : updates)

@@ -310,6 +310,10 @@ void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& c
                       std::make_move_iterator(of_block.end()));
     first.push_back(candidates.size());
   }
+  parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (Candidate& c : std::span(candidates).subspan(begin, end - begin))
+      if (c.plain.value.empty()) straight_shape(body, points.blocks[c.block], c.point, c.plain);
+  });
   std::vector<SupportTask> tasks;
   for (Candidate& c : candidates)
     if (c.plain.value.empty()) tasks.push_back({&c.copy, &c.plain, &points.blocks[c.block], c.point, true});

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "body/incremental_cache.h"
 #include "geometry/distance.h"
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/discretisation/kernel.h"
+#include "mechanics/discretisation/point_supports.h"
 
 namespace geo {
 namespace {
@@ -53,9 +53,9 @@ bool InverseDeformation::is_included(FaceId f) const {
 void InverseDeformation::update(Neighborhood& near, const Vec3& x) const {
   if ((near.material - x).norm() < 0.5 * largest_support_) return;
   near.material = x, near.node.clear(), near.fading.clear();
-  std::vector<std::uint32_t> candidates;
-  body_.cache->grid.within(body_.nodes.position, x, 1.5 * largest_support_, candidates);
-  for (const auto i : candidates)
+  // The margin is far beyond rounding.
+  const Box3 about = Box3{x, x}.grown((0.5 + 1e-9) * largest_support_);
+  for (const auto i : supporting_nodes(body_, about, 1, largest_support_))
     if (const double fading = fade((near.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3);
         fading > 0 && is_included(i))
       near.node.push_back(i), near.fading.push_back(fading);

@@ -44,7 +44,8 @@ class InverseDeformation {
   }
 
  private:
-  /// The nodes that take part at a world position; valid within half a support of `material`.
+  /// The nodes that take part at a world position; valid within half of the largest support of
+  /// `material`.
   struct Neighborhood {
     Vec3 world, material = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     std::vector<std::uint32_t> node;

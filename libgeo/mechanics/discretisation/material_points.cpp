@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <iterator>
 #include <optional>
 
 #include "kerf/error.h"
@@ -32,6 +32,18 @@ std::optional<PointBlock::Source> source_quad(std::span<const PointBlock::Source
   return from;
 }
 
+// Consecutive points of one block are one run.
+std::vector<PointBlock::SourceRun> runs_of(std::span<const PointBlock::Source> sources) {
+  std::vector<PointBlock::SourceRun> runs;
+  for (const PointBlock::Source& s : sources)
+    if (!s.shape && !runs.empty() && !runs.back().shape && runs.back().block == s.block &&
+        runs.back().point + runs.back().count == s.point)
+      ++runs.back().count;
+    else
+      runs.push_back({s, 1});
+  return runs;
+}
+
 std::vector<PointBlock::Source> sources_of(std::span<const ShapeGradients> shapes) {
   std::vector<PointBlock::Source> sources;
   for (const ShapeGradients& shape : shapes) sources.push_back({nullptr, 0, &shape});
@@ -44,53 +56,18 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeGrad
     : PointBlock(std::move(all), sources_of(shapes)) {}
 
 PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> sources) : points(std::move(all)) {
-  // The nodes of all points. Per source block: which of its nodes are used, then their indices in
-  // this block.
+  const std::vector<SourceRun> runs = runs_of(sources);
+  LocalNodes local_nodes = list_nodes(runs);
   std::size_t entries = 0;
-  std::map<const PointBlock*, std::vector<std::uint16_t>> local_nodes;
-  for (const Source& s : sources)
-    if (s.shape) {
-      nodes.insert(nodes.end(), s.shape->nodes.begin(), s.shape->nodes.end()), entries += s.shape->nodes.size();
-    } else {
-      auto& used = local_nodes[s.block];
-      used.resize(s.block->nodes.size(), 0);
-      for (auto q = s.block->entry_begin[s.point]; q < s.block->entry_begin[s.point + 1]; ++q)
-        used[s.block->entry_node[q]] = 1;
-      entries += s.block->entry_begin[s.point + 1] - s.block->entry_begin[s.point];
-    }
-  for (const auto& [block, used] : local_nodes)
-    for (std::size_t k = 0; k < used.size(); ++k)
-      if (used[k]) nodes.push_back(block->nodes[k]);
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  if (nodes.size() > 65536)
-    throw InputError("more than 65536 nodes share a block of material points; choose a smaller support");
-  const auto local = [&](std::uint32_t node) {
-    return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-  };
-  for (auto& [block, local_node] : local_nodes)
-    for (std::size_t k = 0; k < local_node.size(); ++k) local_node[k] = local(block->nodes[k]);
-
-  entry_begin.reserve(points.size() + 1), entry_node.reserve(entries), entry_gradient.reserve(3 * entries);
-  entry_bent.reserve(entries);
+  for (const SourceRun& run : runs) entries += run.entries();
+  entry_begin.reserve(points.size() + 1), entry_node.reserve(entries), entry_bent.reserve(entries);
+  entry_gradient.reserve(3 * entries), entry_gradient_single.reserve(3 * entries + 1);
   entry_begin.push_back(0);
-  for (const Source& s : sources) {
-    if (s.shape) {
-      for (const auto j : s.shape->nodes) entry_node.push_back(local(j));
-      for (const Vec3& g : s.shape->gradient) entry_gradient.insert(entry_gradient.end(), g.begin(), g.end());
-      entry_bent.insert(entry_bent.end(), s.shape->bent.begin(), s.shape->bent.end());
-      entry_bent.resize(entry_node.size(), 0);
-    } else {
-      const auto& local_node = local_nodes[s.block];
-      const auto begin = s.block->entry_begin[s.point], end = s.block->entry_begin[s.point + 1];
-      for (auto q = begin; q < end; ++q) entry_node.push_back(local_node[s.block->entry_node[q]]);
-      entry_gradient.insert(entry_gradient.end(), s.block->entry_gradient.data() + 3 * begin,
-                            s.block->entry_gradient.data() + 3 * end);
-      entry_bent.insert(entry_bent.end(), s.block->entry_bent.data() + begin, s.block->entry_bent.data() + end);
-    }
-    entry_begin.push_back(static_cast<std::uint32_t>(entry_node.size()));
-  }
-  entry_gradient_single.assign(entry_gradient.begin(), entry_gradient.end());
+  for (const SourceRun& run : runs)
+    if (run.shape)
+      append(*run.shape);
+    else
+      append(run, local_nodes[run.block]);
   entry_gradient_single.push_back(0);  // vector loads of an entry read four numbers
   quantum.assign((points.size() + 7) / 8 * 8, 0), quad_begin.assign(1, 0);
   for (std::size_t quad = 0; 4 * quad < quantum.size(); ++quad) {
@@ -101,6 +78,61 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
     quad_begin.push_back(static_cast<std::uint32_t>(quad_node.size()));
   }
   for (const MaterialPoint& p : points) box.add(p.position);
+}
+
+// Lists the nodes of all points.
+PointBlock::LocalNodes PointBlock::list_nodes(std::span<const SourceRun> runs) {
+  LocalNodes local_nodes;
+  std::span<const std::uint32_t> last;
+  for (const SourceRun& run : runs)
+    if (run.shape) {  // points side by side share most nodes
+      const auto& own = run.shape->nodes;
+      std::set_difference(own.begin(), own.end(), last.begin(), last.end(), std::back_inserter(nodes));
+      last = own;
+    } else {
+      auto& used = local_nodes[run.block];
+      used.resize(run.block->nodes.size(), 0);
+      for (auto q = run.begin(); q < run.end(); ++q) used[run.block->entry_node[q]] = 1;
+    }
+  for (const auto& [block, used] : local_nodes)
+    for (std::size_t k = 0; k < used.size(); ++k)
+      if (used[k]) nodes.push_back(block->nodes[k]);
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  if (nodes.size() > 65536)
+    throw InputError("more than 65536 nodes share a block of material points; choose a smaller support");
+  for (auto& [block, local] : local_nodes)
+    for (std::size_t k = 0; k < local.size(); ++k) local[k] = local_index(block->nodes[k]);
+  return local_nodes;
+}
+
+std::uint16_t PointBlock::local_index(std::uint32_t node) const {
+  return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+}
+
+void PointBlock::append(const ShapeGradients& shape) {
+  for (const auto j : shape.nodes) entry_node.push_back(local_index(j));
+  for (const Vec3& g : shape.gradient) {
+    entry_gradient.insert(entry_gradient.end(), g.begin(), g.end());
+    entry_gradient_single.insert(entry_gradient_single.end(), g.begin(), g.end());
+  }
+  entry_bent.insert(entry_bent.end(), shape.bent.begin(), shape.bent.end());
+  entry_bent.resize(entry_node.size(), 0);
+  entry_begin.push_back(static_cast<std::uint32_t>(entry_node.size()));
+}
+
+void PointBlock::append(const SourceRun& run, std::span<const std::uint16_t> local_node) {
+  const PointBlock& from = *run.block;
+  const auto begin = run.begin(), end = run.end(), before = static_cast<std::uint32_t>(entry_node.size());
+  const auto copy = [&](const auto& of, auto& to, std::size_t width) {
+    to.insert(to.end(), of.data() + width * begin, of.data() + width * end);
+  };
+  copy(from.entry_gradient, entry_gradient, 3), copy(from.entry_gradient_single, entry_gradient_single, 3);
+  copy(from.entry_bent, entry_bent, 1);
+  entry_node.resize(before + end - begin);
+  for (auto q = begin; q < end; ++q) entry_node[before + q - begin] = local_node[from.entry_node[q]];
+  for (std::size_t i = run.point; i < run.point + run.count; ++i)
+    entry_begin.push_back(before + from.entry_begin[i + 1] - begin);
 }
 
 // Error diffusion: the rounding error of a node's gradient is carried to the next node, so that the

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -65,6 +66,17 @@ struct PointBlock {
     const ShapeGradients* shape = nullptr;
   };
 
+  /// Consecutive points of a block, or one point with a `shape` of its own.
+  struct SourceRun : Source {
+    std::size_t count = 1;  ///< of points
+    /// The first entry in the block.
+    std::uint32_t begin() const { return block->entry_begin[point]; }
+    /// The entry after the last.
+    std::uint32_t end() const { return block->entry_begin[point + count]; }
+    /// The number of entries.
+    std::size_t entries() const { return shape ? shape->nodes.size() : end() - begin(); }
+  };
+
   /// An empty block.
   PointBlock() = default;
   /// One source per point. Throws InputError if the block has more than 65536 nodes.
@@ -85,6 +97,12 @@ struct PointBlock {
   friend bool operator==(const PointBlock& a, const PointBlock& b);
 
  private:
+  // Per source block: the indices in `nodes` of its nodes in use.
+  using LocalNodes = std::map<const PointBlock*, std::vector<std::uint16_t>>;
+  LocalNodes list_nodes(std::span<const SourceRun> runs);
+  std::uint16_t local_index(std::uint32_t node) const;
+  void append(const ShapeGradients& shape);
+  void append(const SourceRun& run, std::span<const std::uint16_t> local_node);
   void quantise(std::size_t quad);
   void copy_quad(std::size_t quad, const Source& from, const std::vector<std::uint16_t>& local_node);
 };

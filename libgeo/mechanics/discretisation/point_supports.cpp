@@ -25,6 +25,10 @@ constexpr double ill_conditioned = 500;  // and so does one with a larger condit
 constexpr double steepest_shape = 4;
 constexpr double without_strain = 1e7;  // times the rounding unit 1e-16: linear fields would be off by 1e-9
 constexpr std::size_t tasks_per_batch = 32;
+// A path to a node that is shorter than its support S admits stays within ½ √(L² − s²) of the box
+// of point and node, with s their distance and L = (S / s)^¼ s. That is at most 0.1624 S, where s =
+// 9/16 S. The rest covers the distance of a path from its front edge.
+constexpr double bent_width = 0.17;
 
 bool is_on_face(const Complex& surface, const Vec3& p) {
   std::vector<FaceId> near;
@@ -60,24 +64,38 @@ class NodeComponents {
   std::vector<std::uint32_t> size_;
 };
 
-// Tasks of neighbouring points, with the nodes and fronts that they share.
+// Tasks of neighbouring points, with the nodes that may support each, and fronts that they share.
 struct Batch {
   std::span<const SupportTask> tasks;
-  std::vector<std::uint32_t> nodes;  // ascending
+  std::vector<std::size_t> first;                   // per task and one more, into `nodes`
+  std::vector<std::uint32_t> nodes;                 // of each task, ascending
+  std::vector<std::vector<std::uint32_t>> changed;  // per task: faces that lines of sight may touch
   std::vector<FrontEdge> fronts;
-  Box3 influence;                      // holds all lines of sight, bent ones included
+  Box3 influence;                      // holds all lines of sight to be tested, bent ones included
   std::vector<SupportTask> deficient;  // points that see too few nodes at the largest factor tried
 
-  void find_nodes(const Body& body, double factor, double largest_radius) {
+  // `factor`: the largest.
+  void find_nodes(const Body& body, double factor, double largest_radius, const VisibilityChanges* changes) {
     const auto& position = body.nodes.position;
     const auto& radius = body.nodes.radius;
     Box3 box;
     for (const SupportTask& task : tasks) box.add(task.point->position);
-    body.cache->grid.within(position, box.center(), 0.5 * (box.hi - box.lo).norm() + factor * largest_radius, nodes);
-    std::erase_if(nodes, [&](auto j) { return !box.grown(factor * radius[j]).meets({position[j], position[j]}); });
     double largest = 0;
-    for (const auto j : nodes) largest = std::max(largest, radius[j]);
-    influence = box.grown(factor * largest);
+    first.assign(1, 0);
+    const auto all = supporting_nodes(body, box, factor, largest_radius);
+    for (const SupportTask& task : tasks) {
+      const Vec3& x = task.point->position;
+      influence.add(x);
+      changed.push_back(changed_near(task, changes));
+      const bool recalls = sees_as_before(task, factor, changes, changed.back());
+      for (const auto j : all)
+        if ((position[j] - x).norm() < factor * radius[j]) {
+          nodes.push_back(j);
+          if (!recalls || changes->has_changed(j)) influence.add(position[j]), largest = std::max(largest, radius[j]);
+        }
+      first.push_back(nodes.size());
+    }
+    influence = influence.grown(bent_width * factor * largest);
   }
 
   void compute(const Body& body, std::span<const double> factors, const Occluders& occluders,
@@ -86,12 +104,15 @@ struct Batch {
       if (const Vec3 middle = 0.5 * (e.a + e.b); influence.grown((e.b - e.a).norm()).meets({middle, middle}))
         fronts.push_back(e);
     Scratch scratch;
-    for (const SupportTask& task : tasks) {
+    for (std::size_t t = 0; t < tasks.size(); ++t) {
+      const SupportTask& task = tasks[t];
+      const auto candidates = std::span(nodes).subspan(first[t], first[t + 1] - first[t]);
       bool enough = false, few = false;
       for (std::size_t k = 0; k < factors.size() && !enough; ++k) {
         // With too few nodes in the component no factor is enough: the last one decides.
         if (few) k = factors.size() - 1;
-        enough = compute({body, task, factors[k], occluders.faces, changes, components}, scratch);
+        enough = compute({body, task, factors[k], occluders.faces, changes, components, changed[t]}, candidates, fronts,
+                         scratch);
         few = scratch.component && components.size(*scratch.component) < enough_nodes;
       }
       if (!enough) deficient.push_back(task);
@@ -121,20 +142,39 @@ struct Batch {
     const TriangleBvh& faces;
     const VisibilityChanges* changes;
     const NodeComponents& components;
+    std::span<const std::uint32_t> changed;  // faces that lines of sight of the point may touch
   };
 
   // Whether what the point saw before is known, and may be true still.
-  static bool is_recalled(const Trial& trial) {
-    if (!trial.changes || !trial.task.before) return false;
-    const MaterialPoint& before = trial.task.before->points[trial.task.point_before];
+  static bool is_recalled(const SupportTask& task, const VisibilityChanges* changes) {
+    if (!changes || !task.before) return false;
+    const MaterialPoint& before = task.before->points[task.point_before];
     // A singular one keeps no nodes.
-    return before.position == trial.task.point->position && before.quality != MomentQuality::singular;
+    return before.position == task.point->position && before.quality != MomentQuality::singular;
+  }
+
+  // The changed faces that lines of sight of the point may touch.
+  static std::vector<std::uint32_t> changed_near(const SupportTask& task, const VisibilityChanges* changes) {
+    std::vector<std::uint32_t> near;
+    if (!is_recalled(task, changes)) return near;
+    const MaterialPoint& before = task.before->points[task.point_before];
+    changes->faces_near({before.position, before.position}, before.influence_radius, near);
+    return near;
+  }
+
+  // Whether the point sees all nodes within `factor` times their supports that have not changed: it
+  // saw them before, and no changed face is near. `changed`: those faces.
+  static bool sees_as_before(const SupportTask& task, double factor, const VisibilityChanges* changes,
+                             std::span<const std::uint32_t> changed) {
+    if (!is_recalled(task, changes) || !changed.empty()) return false;
+    const MaterialPoint& before = task.before->points[task.point_before];
+    return !before.occluded && factor <= support_factors[before.widenings];
   }
 
   // Marks the nodes that the point saw or did not see before, in `hidden` as it was then. A node
   // within the same support had no path round a front where it was not seen.
   static void recall(const Trial& trial, Scratch& scratch) {
-    const auto& [body, task, factor, faces, changes, components] = trial;
+    const auto& [body, task, factor, faces, changes, components, changed] = trial;
     const PointBlock& block = *task.before;
     const MaterialPoint& before = block.points[task.point_before];
     auto entry = block.entry_begin[task.point_before];
@@ -165,16 +205,16 @@ struct Batch {
 
   // Sets `hidden` for each node.
   static void find_hidden_straight(const Trial& trial, Scratch& scratch) {
-    const auto& [body, task, factor, faces, changes, components] = trial;
+    const auto& [body, task, factor, faces, changes, components, changed] = trial;
     const Vec3& x = task.point->position;
     const std::size_t n = scratch.nodes.size();
     scratch.hidden.assign(n, 0);
     scratch.path.assign(n, Path::unknown);
     if (faces.empty()) return;
-    if (!is_recalled(trial)) return faces.blocks(x, scratch.positions, scratch.hidden.data());
+    if (!is_recalled(task, changes)) return faces.blocks(x, scratch.positions, scratch.hidden.data());
     scratch.is_known.assign(n, 0), scratch.touched.assign(n, 0), scratch.unknown.clear(), scratch.ends.clear();
     recall(trial, scratch);
-    if (!changes->faces().empty()) changes->faces().blocks(x, scratch.positions, scratch.touched.data());
+    if (!changed.empty()) changes->faces().blocks(x, scratch.positions, scratch.touched.data());
     for (std::uint32_t q = 0; q < n; ++q)
       if (!scratch.is_known[q] || scratch.touched[q])
         scratch.unknown.push_back(q), scratch.ends.push_back(scratch.positions[q]);
@@ -185,13 +225,12 @@ struct Batch {
 
   // Keeps `lost` only where no changed face may touch a path, and so no new front either.
   static void forget_paths(const Trial& trial, Scratch& scratch) {
-    const auto& [body, task, factor, faces, changes, components] = trial;
+    const auto& [body, task, factor, faces, changes, components, changed] = trial;
     if (std::find(scratch.path.begin(), scratch.path.end(), Path::lost) == scratch.path.end()) return;
     const Vec3& x = task.point->position;
-    const auto near = changes->faces_near(x, task.before->points[task.point_before].influence_radius);
     for (std::size_t q = 0; q < scratch.nodes.size(); ++q)
       if (scratch.hidden[q] && scratch.path[q] == Path::lost &&
-          changes->meet_bent_paths(x, scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]], near))
+          changes->meet_bent_paths(x, scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]], changed))
         scratch.path[q] = Path::unknown;
   }
 
@@ -207,14 +246,16 @@ struct Batch {
     return false;
   }
 
-  // True if the point sees enough nodes, and its shape functions are usable.
-  bool compute(const Trial& trial, Scratch& scratch) const {
-    const auto& [body, task, factor, faces, changes, components] = trial;
+  // True if the point sees enough nodes, and its shape functions are usable. `candidates`: the
+  // nodes that support it at the largest factor.
+  static bool compute(const Trial& trial, std::span<const std::uint32_t> candidates, std::span<const FrontEdge> fronts,
+                      Scratch& scratch) {
+    const auto& [body, task, factor, faces, changes, components, changed] = trial;
     MaterialPoint& point = *task.point;
     ShapeGradients& shape = *task.shape;
     const Vec3& x = point.position;
     scratch.nodes.clear(), scratch.positions.clear(), scratch.seen.clear(), shape.nodes.clear(), shape.bent.clear();
-    for (const auto j : nodes)
+    for (const auto j : candidates)
       if (const Vec3& y = body.nodes.position[j]; (y - x).norm() < factor * body.nodes.radius[j])
         scratch.nodes.push_back(j), scratch.positions.push_back(y);
     find_hidden(trial, scratch);
@@ -237,7 +278,7 @@ struct Batch {
       shape.nodes.push_back(scratch.nodes[q]), shape.bent.push_back(scratch.hidden[q]), scratch.seen.push_back(*node);
     }
     const double condition =
-        shape_gradients(x, scratch.seen, shape.gradient, task.with_values ? &shape.value : nullptr);
+        shape_gradients(x, scratch.seen, shape.gradient, task.with_values ? &shape.value : nullptr, ill_conditioned);
     point.quality = condition <= ill_conditioned  ? MomentQuality::good
                     : condition <= without_strain ? MomentQuality::poor
                                                   : MomentQuality::singular;
@@ -299,9 +340,16 @@ VisibilityChanges::VisibilityChanges(std::span<const std::array<Vec3, 3>> faces,
   }
 }
 
-std::vector<std::uint32_t> VisibilityChanges::faces_near(const Vec3& x, double radius) const {
+void VisibilityChanges::faces_near(const Box3& points, double radius, std::vector<std::uint32_t>& faces) const {
+  faces_.near(points.grown(radius * (1 + 2 * bend_margin)), faces);
+}
+
+std::vector<std::uint32_t> VisibilityChanges::faces_near(const Vec3& x, double radius,
+                                                         std::span<const std::uint32_t> faces) const {
+  const Box3 influence = Box3{x, x}.grown(radius * (1 + 2 * bend_margin));
   std::vector<std::uint32_t> near;
-  faces_.near(Box3{x, x}.grown(radius * (1 + 2 * bend_margin)), near);
+  for (const auto f : faces)
+    if (const auto& [a, b, c] = faces_.corners(f); box_of(a, b, c).meets(influence)) near.push_back(f);
   return near;
 }
 
@@ -341,6 +389,39 @@ Vec3 moved_off_faces(const Body& body, const Vec3& p) {
   return p;
 }
 
+std::vector<std::uint32_t> supporting_nodes(const Body& body, const Box3& box, double factor, double largest_radius) {
+  const auto& position = body.nodes.position;
+  const Box3 reach = box.grown(factor * largest_radius);
+  std::vector<std::uint32_t> nodes;
+  body.cache->grid.walk(
+      [&](int, const Vec3& middle, double half) {
+        return reach.meets({middle - Vec3::Constant(half), middle + Vec3::Constant(half)});
+      },
+      [&](int, std::uint32_t j) {
+        if (box.grown(factor * body.nodes.radius[j]).meets({position[j], position[j]})) nodes.push_back(j);
+      });
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+bool straight_shape(const Body& body, const PointBlock& block, std::size_t point, ShapeGradients& shape) {
+  const auto begin = block.entry_begin[point], end = block.entry_begin[point + 1];
+  if (std::any_of(block.entry_bent.begin() + begin, block.entry_bent.begin() + end,
+                  [](auto bent) { return bent != 0; }))
+    return false;
+  const MaterialPoint& p = block.points[point];
+  std::vector<SupportNode> seen;
+  shape.nodes.clear(), shape.bent.assign(end - begin, 0);
+  for (auto q = begin; q < end; ++q) {
+    const auto j = block.nodes[block.entry_node[q]];
+    shape.nodes.push_back(j);
+    const double support = support_factors[p.widenings] * body.nodes.radius[j];
+    seen.push_back(direct_support(p.position, body.nodes.position[j], support));
+  }
+  shape_gradients(p.position, seen, shape.gradient, &shape.value, ill_conditioned);
+  return true;
+}
+
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders,
                       const VisibilityChanges* changes, std::span<const std::uint32_t> component) {
   const NodeComponents components(component);
@@ -350,7 +431,7 @@ void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Oc
   for (const auto factors : {all.first(1), all.subspan(1)}) {
     std::vector<Batch> batches = batches_of(tasks, largest_radius);
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b) batches[b].find_nodes(body, factors.back(), largest_radius);
+      for (std::size_t b = begin; b < end; ++b) batches[b].find_nodes(body, factors.back(), largest_radius, changes);
     });
     const Occluders near = occluders ? Occluders() : near_occluders(body.surface, batches);
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -34,6 +34,10 @@ Occluders all_occluders(const Complex& surface);
 /// is moved towards the nearest node by a small fraction of the distance.
 Vec3 moved_off_faces(const Body& body, const Vec3& p);
 
+/// The nodes whose supports, `factor` times as wide, may hold a point of a box, ascending.
+/// `largest_radius`: of all nodes.
+std::vector<std::uint32_t> supporting_nodes(const Body& body, const Box3& box, double factor, double largest_radius);
+
 /// Possible changes of visibility since a set of points was computed.
 class VisibilityChanges {
  public:
@@ -45,11 +49,13 @@ class VisibilityChanges {
   const TriangleBvh& faces() const { return faces_; }
   /// Whether a node has changed.
   bool has_changed(std::uint32_t node) const { return node_[node] != 0; }
-  /// The faces that lines of sight of a point may touch, bent ones included. `radius`: the point's
-  /// influence radius.
-  std::vector<std::uint32_t> faces_near(const Vec3& x, double radius) const;
+  /// Appends the faces that lines of sight of points in a box may touch, bent ones included.
+  /// `radius`: the largest influence radius of the points.
+  void faces_near(const Box3& points, double radius, std::vector<std::uint32_t>& faces) const;
+  /// Those of `faces` that lines of sight of a point may touch, with `radius` the point's.
+  std::vector<std::uint32_t> faces_near(const Vec3& x, double radius, std::span<const std::uint32_t> faces) const;
   /// Whether one of the faces may touch a path from x to a node that is shorter than its support
-  /// admits. `faces`: those of faces_near(x).
+  /// admits. `faces`: those of faces_near() for x.
   bool meet_bent_paths(const Vec3& x, const Vec3& node, double support, std::span<const std::uint32_t> faces) const;
 
  private:
@@ -68,6 +74,11 @@ struct SupportTask {
   std::size_t point_before = 0;
   bool with_values = false;  ///< whether ShapeGradients::value is computed, too
 };
+/// Computes the shape gradients of a point again, with values, from the nodes that it is known to
+/// see. False, and nothing computed, where it sees one of them round a front. Precondition: the
+/// point is not singular, and nothing has changed since it was computed.
+bool straight_shape(const Body& body, const PointBlock& block, std::size_t point, ShapeGradients& shape);
+
 /// Computes the shape gradients, and all members of the points except volumes. Consecutive tasks
 /// should be near each other. `occluders`: those of the whole surface; null: nearby ones are
 /// queried. `changes`: since the blocks `before` of the tasks; lines of sight that they do not

@@ -40,9 +40,10 @@ SupportNode direct_support(const Vec3& x, const Vec3& node, double support);
 /// Full derivatives (weights and moment matrix differentiated, too) at x of φ_j = pᵀ M⁻¹ p_j w_j,
 /// with the quartic spline w = 1 − 6 s² + 8 s³ − 3 s⁴ and s the distance over the support. One
 /// gradient per element of `nodes`, 1/model unit, and one φ_j in `value` unless that is null.
-/// Returns the condition number of M, with lengths in units of the mean support. It is infinite,
-/// and `gradient` empty, for fewer than four nodes or coplanar ones.
+/// Returns the condition number of M, with lengths in units of the mean support, or an upper bound
+/// that is less than `enough`. It is infinite, and `gradient` empty, for fewer than four nodes or
+/// coplanar ones.
 double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::vector<Vec3>& gradient,
-                       std::vector<double>* value = nullptr);
+                       std::vector<double>* value = nullptr, double enough = 0);
 
 }  // namespace geo

@@ -16,43 +16,63 @@ HWY_BEFORE_NAMESPACE();
 namespace geo::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void OuterProducts(const PointBlock& block, const std::uint32_t* first, const Subdomains::Incidence* places,
-                   BlockOuterProducts& out) {
+// A node of a subdomain that a point sees: its slot, and its shape gradient.
+struct SeenNode {
+  std::uint32_t slot;
+  const float* g;
+};
+
+// Adds w g_a g_bᵀ for the nodes that one point sees, which ascend.
+HWY_INLINE void add_point(float w, std::span<const SeenNode> seen, float* tiles) {
   using Four = hn::CappedTag<float, 4>;
   const Four d;
   constexpr std::size_t step = hn::MaxLanes(Four());
-  struct Entry {
-    std::uint32_t slot;
-    const float* g;
-  };
-  std::vector<std::vector<Entry>> entries(out.subdomains.size());
-  std::vector<std::uint32_t> touched;
-  for (std::size_t i = 0; i < block.points.size(); ++i) {
+  for (std::size_t a = 0; a < seen.size(); ++a) {
+    const auto x = hn::Set(d, w * seen[a].g[0]), y = hn::Set(d, w * seen[a].g[1]), z = hn::Set(d, w * seen[a].g[2]);
+    const std::size_t s = seen[a].slot;
+    float* const row = tiles + 12 * (s * (s + 1) / 2);
+    for (std::size_t b = 0; b <= a; ++b) {
+      float* const to = row + 12 * std::size_t(seen[b].slot);
+      for (std::size_t k = 0; k < 4; k += step) {
+        const auto g = hn::LoadU(d, seen[b].g + k);
+        hn::StoreU(hn::MulAdd(x, g, hn::LoadU(d, to + k)), d, to + k);
+        hn::StoreU(hn::MulAdd(y, g, hn::LoadU(d, to + 4 + k)), d, to + 4 + k);
+        hn::StoreU(hn::MulAdd(z, g, hn::LoadU(d, to + 8 + k)), d, to + 8 + k);
+      }
+    }
+  }
+}
+
+void OuterProducts(const PointBlock& block, const std::uint32_t* first, const Subdomains::Incidence* places,
+                   BlockOuterProducts& out) {
+  // Per subdomain: the nodes that the present point sees, in the space of all its nodes.
+  std::vector<std::uint32_t> begin(out.subdomains.size() + 1, 0), count(out.subdomains.size(), 0);
+  for (std::uint32_t k = 0; k < first[block.nodes.size()]; ++k) ++begin[places[k].subdomain + 1];
+  for (std::size_t p = 0; p < count.size(); ++p) begin[p + 1] += begin[p];
+  std::vector<SeenNode> seen(begin.back());
+  std::vector<std::uint8_t> belongs(block.nodes.size());
+  for (std::size_t k = 0; k < belongs.size(); ++k) belongs[k] = first[k] < first[k + 1];
+  std::vector<std::uint32_t> touched, entries;
+  for (std::uint32_t i = 0; i < block.points.size(); ++i) {
     const MaterialPoint& point = block.points[i];
     if (point.quality == MomentQuality::singular) continue;
-    const float w = static_cast<float>(point.unscaled_volume);
-    for (std::size_t q = block.entry_begin[i]; q < block.entry_begin[i + 1]; ++q)
-      for (auto k = first[block.entry_node[q]]; k < first[block.entry_node[q] + 1]; ++k) {
-        auto& list = entries[places[k].subdomain];
-        if (list.empty()) touched.push_back(places[k].subdomain);
-        list.push_back({places[k].slot, &block.entry_gradient_single[3 * q]});
+    const auto from = block.entry_begin[i], to = block.entry_begin[i + 1];
+    entries.resize(to - from);
+    std::size_t used = 0;  // few entries, in no order that a processor predicts: no branch
+    for (auto q = from; q < to; ++q) entries[used] = q, used += belongs[block.entry_node[q]];
+    for (std::size_t e = 0; e < used; ++e) {
+      const auto node = block.entry_node[entries[e]];
+      const float* const g = &block.entry_gradient_single[3 * std::size_t(entries[e])];
+      for (auto k = first[node]; k < first[node + 1]; ++k) {
+        const auto p = places[k].subdomain;
+        if (count[p] == 0) touched.push_back(p);
+        seen[begin[p] + count[p]++] = {places[k].slot, g};
       }
+    }
     for (const auto p : touched) {
-      auto& list = entries[p];
-      float* const tiles = &out.outer[out.first[p]];
-      for (std::size_t a = 0; a < list.size(); ++a)
-        for (std::size_t b = 0; b <= a; ++b) {  // the entries of a point ascend, and so do slots
-          const std::size_t s = list[a].slot, t = list[b].slot;
-          float* const to = tiles + 12 * (s * (s + 1) / 2 + t);
-          for (std::size_t k = 0; k < 4; k += step) {
-            const auto g = hn::LoadU(d, list[b].g + k);
-            for (std::size_t r = 0; r < 3; ++r)
-              hn::StoreU(hn::MulAdd(hn::Set(d, w * list[a].g[r]), g, hn::LoadU(d, to + 4 * r + k)), d, to + 4 * r + k);
-          }
-        }
-      if (list.size() > out.best_point[p].nodes)
-        out.best_point[p] = {static_cast<std::uint32_t>(list.size()), static_cast<std::uint32_t>(i)};
-      list.clear();
+      add_point(static_cast<float>(point.unscaled_volume), {&seen[begin[p]], count[p]}, &out.outer[out.first[p]]);
+      if (count[p] > out.best_point[p].nodes) out.best_point[p] = {count[p], i};
+      count[p] = 0;
     }
     touched.clear();
   }

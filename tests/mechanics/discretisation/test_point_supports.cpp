@@ -108,7 +108,7 @@ TEST_CASE("points beside a crack have no steep shape functions while their suppo
   CHECK(widest < steep);
 }
 
-TEST_CASE("components of the graph leave the supports of points as they are", "[supports]") {
+TEST_CASE("components of the graph, and faces nearby alone, leave the supports of points as they are", "[supports]") {
   std::size_t few = 0, bent = 0, singular = 0;
   const auto [first, count] = seeds(30);
   for (int n = 0; n < count; ++n) {
@@ -128,9 +128,19 @@ TEST_CASE("components of the graph leave the supports of points as they are", "[
     const std::uint32_t components = body.graph.components(component);
     for (std::uint32_t c = 0; c < components; ++c) few += std::count(component.begin(), component.end(), c) < 8;
     const auto positions = random_positions(random, 200);
-    const auto expected = supports(body, positions), found = supports(body, positions, nullptr, component);
+    const Occluders everything = all_occluders(body.surface);
+    const auto expected = supports(body, positions, &everything), found = supports(body, positions, nullptr, component);
+    std::vector<MaterialPoint> points;
+    std::vector<ShapeGradients> shapes;
+    for (const Supported& e : expected) points.push_back(e.point), shapes.push_back(e.shape);
+    const PointBlock block(points, shapes);
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const auto &e = expected[i], &f = found[i];
+      if (ShapeGradients again; e.point.quality != MomentQuality::singular) {
+        const bool is_straight = straight_shape(body, block, i, again);
+        CHECK(is_straight == (std::count(e.shape.bent.begin(), e.shape.bent.end(), 1) == 0));
+        CHECK((!is_straight || (again.nodes == e.shape.nodes && again.gradient == e.shape.gradient)));
+      }
       CHECK(f.shape.nodes == e.shape.nodes);
       CHECK(f.shape.gradient == e.shape.gradient);
       CHECK(f.shape.bent == e.shape.bent);

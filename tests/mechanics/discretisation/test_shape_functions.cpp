@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numbers>
 
 #include "base/random.h"
@@ -104,6 +105,28 @@ TEST_CASE("shape gradients reproduce linear fields and match differences of the 
         CHECK(gradient[j][a] == Approx(difference[Eigen::Index(j)]).epsilon(1e-4).margin(1e-5));
     }
   }
+}
+
+TEST_CASE("a bound of the condition number decides as the number itself, also for nearly coplanar nodes", "[shape]") {
+  const auto [first, count] = seeds(2000);
+  std::size_t bounds = 0;
+  for (std::uint64_t seed = first; seed < first + std::uint64_t(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    std::vector<Vec3> nodes = random_nodes(random, 4 + random.below(20));
+    const double flat = std::pow(10.0, -10 * random.uniform() * random.uniform());
+    for (Vec3& y : nodes) y.z() *= flat;
+    const Vec3 x = 0.1 * flat * random.direction();
+    constexpr double enough = 500;
+    std::vector<Vec3> gradient, same;
+    const double condition = shape_gradients(x, seen_from(x, nodes), gradient);
+    const double bound = shape_gradients(x, seen_from(x, nodes), same, nullptr, enough);
+    CHECK((bound <= enough) == (condition <= enough));
+    CHECK(bound >= (1 - 1e-9) * condition);
+    CHECK(same == gradient);
+    bounds += bound != condition;
+  }
+  CHECK(bounds > 0);
 }
 
 TEST_CASE("too few nodes, and coplanar ones, have no shape gradients", "[shape]") {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/incremental_cache.h"
 #include "geometry/distance.h"
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/discretisation/kernel.h"

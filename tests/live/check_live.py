@@ -66,7 +66,8 @@ def jello():
     for dx, dy in [(90, -60), (-90, -40), (60, -80)]:
         hand.drag(along(top, [top[0] + dx, top[1] + dy], steps=4), release=False)
         widest = max(widest, hand.run(box))
-    check(f"jello: {at_rest} wide at rest, {widest} while it is shaken", widest > 1.03 * at_rest)
+    # Frames may be slow: the grip still holds it, so it gets wider until it has followed.
+    hand.wait(f"{widest} > {1.03 * at_rest} || {box} > {1.03 * at_rest}", seconds=20)
     hand.mouse("mouseReleased", top[0] + 60, top[1] - 80)
     hand.wait("hand.stroke === null && live.stats.pieces === 1")
     session.pause()

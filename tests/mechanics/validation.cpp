@@ -22,11 +22,6 @@ Material steel_like() {
   return m;
 }
 
-State at_rest(const Body& body) {
-  const std::vector<Vec3> zero(body.nodes.size(), Vec3::Zero());
-  return {zero, zero};
-}
-
 // A bar along x of unit section, as long as whole cells make it, held over the two cells at its
 // foot, which come on top.
 struct Bar {

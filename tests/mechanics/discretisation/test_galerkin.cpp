@@ -21,10 +21,6 @@ Material soft() {
   return m;
 }
 
-State at_rest(const Body& body) {
-  return {std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), {}};
-}
-
 std::vector<Vec3> field(const Body& body, const std::function<Vec3(const Vec3&)>& u) {
   std::vector<Vec3> values;
   for (const Vec3& x : body.nodes.position) values.push_back(u(x));

@@ -69,10 +69,6 @@ Material other(Discretisation discretisation) {
   return m;
 }
 
-State at_rest(const Body& body) {
-  return {std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero())};
-}
-
 Environment clamped(const Body& body) {
   Environment env;
   for (const Vec3& x : body.nodes.position) env.fixed.push_back(x.x() < 0.15);

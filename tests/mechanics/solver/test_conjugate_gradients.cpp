@@ -32,7 +32,7 @@ struct Linearised {
   Linearised(double young, double dt, double accuracy, double spacing = 0.1)
       : body(block_body({0.8, 0.3, 0.3}, spacing)),
         solid(body, rubber(young)),
-        start{std::vector<Vec3>(size(), Vec3::Zero()), std::vector<Vec3>(size(), Vec3::Zero())},
+        start(at_rest(body)),
         problem{solid.discretisation(), start, dt, environment, accuracy},
         potential(problem),
         all(potential.islands(), solid.discretisation().subdomains),

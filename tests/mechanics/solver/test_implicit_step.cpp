@@ -17,10 +17,6 @@ Material rubber() {
   return m;
 }
 
-State at_rest(const Body& body) {
-  return {std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero())};
-}
-
 // A block that was cut across at x = 0.5.
 struct Halves {
   Body body;

@@ -21,7 +21,7 @@ struct Bar {
   double dt = 0.01;
 
   explicit Bar(double young) : solid(body, material(young)) {
-    start = {std::vector<Vec3>(size(), Vec3::Zero()), std::vector<Vec3>(size(), Vec3::Zero())};
+    start = at_rest(body);
     environment.gravity.setZero();
   }
   std::size_t size() const { return body.nodes.size(); }

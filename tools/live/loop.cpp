@@ -128,10 +128,7 @@ class Loop {
   bool obey_command(ClientId, const Step&) { return paused_ = true, ++steps_, false; }
 
   // After going back, the effort is what the recording says.
-  void restart() {
-    release_free_memory();
-    effort_ = session_.effort(), pacer_.restart();
-  }
+  void restart() { effort_ = session_.effort(), pacer_.restart(); }
 
   void say(const std::string& sentence) { message_ = sentence, said_ = Clock::now(); }
 

@@ -9,6 +9,7 @@
 
 #include <kerf/error.h>
 #include <kerf/pieces.h>
+#include "live/memory.h"
 #include "sim/start.h"
 
 namespace live {
@@ -233,13 +234,18 @@ void Session::restore(Saved saved) {
   if (saved.state.frame > 0 && (checkpoints_.empty() || checkpoints_.back() != saved.state.frame))
     checkpoints_.push_back(saved.state.frame);
   pins_ = std::move(saved.pins);
-  go_on_from(scene, sim::checkpoint_bytes(saved.body, saved.state, setup_.fingerprint));
+  const std::string checkpoint = sim::checkpoint_bytes(saved.body, saved.state, setup_.fingerprint);
+  saved.body = {}, saved.state = {};
+  go_on_from(scene, checkpoint);
 }
 
 void Session::go_on_from(const geo::Scene& scene, const std::string& checkpoint) {
-  blades_.clear(), pulls_.clear();
+  blades_.clear(), pulls_.clear(), slots_.clear();
+  // The old run goes first. Otherwise the new one fills the gaps that the old one leaves, and keeps
+  // the pages around them.
+  { const geo::Simulation ended = std::move(run_); }
+  release_free_memory();
   run_ = sim::run_from(scene, checkpoint);
-  slots_.clear();
   stats_ = {}, has_cut_ = false, faces_ = run_.body().surface.face_count();
   count_pieces();
 }

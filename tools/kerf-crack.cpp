@@ -250,7 +250,7 @@ int main(int argc, char** argv) {
   t.option("--bumps", w.bumps, "How many of the largest bumps fit along the diagonal");
   t.option("--decimate", w.decimate, "First, drop vertices whose surface stays within this fraction of the diagonal");
   t.flag("--repair", w.repair, "Repair the model first, as kerf-repair does");
-  t.option("--repro", w.repro, "Where to write model and front when a step fails");
+  t.output_option("--repro", w.repro, "Where to write model and front when a step fails");
   t.output("The cut surface (PLY with patch and site; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {
     check(w);

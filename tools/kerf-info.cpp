@@ -175,9 +175,10 @@ int main(int argc, char** argv) {
            "Say what is known of this surface vertex of a body, or vertex of a surface; the first is 0");
   t.flag("--diff", c.diff, "Say what differs between two bodies; exit code 1 when anything does");
   t.flag("--compact", c.compact, "Fold what updates appended to a body, in the file itself or into that of --output");
-  t.option("--export", c.exported,
-           "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end; as a folder for "
-           "peridynamics: .peridigm, .perilab, .peridynamics (for Peridynamics.jl)");
+  t.output_option(
+      "--export", c.exported,
+      "Write a body as .vtu, .hdf (for ParaView), .ply, .npz or .json, told by the name's end; as a folder for "
+      "peridynamics: .peridigm, .perilab, .peridynamics (for Peridynamics.jl)");
   t.option("--horizon", c.horizon, "Horizon of a node for peridynamics, in node spacings, from 1 to 20");
   t.output("Where --compact writes", {".kerf"});
   return t.run(argc, argv, [&] {

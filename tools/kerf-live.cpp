@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
   t.option("--rate", command.rate,
            "Frames per second of the simulation; slow ones get less accuracy and longer time steps, within bounds");
   t.option("--linger", command.linger, "Seconds to wait for a page after the last one was closed; 0: for ever");
-  t.option("--record", command.record, "Write what hands did as a scene to this file, at the end");
+  t.output_option("--record", command.record, "Write what hands did as a scene to this file, at the end");
   t.option("--set", command.settings,
            "Override a key of the scene, as KEY=VALUE; entries of lists by number, as blade.0.divide");
   t.option("--nodes", command.nodes, "Nodes of a model that comes without a scene");

@@ -183,7 +183,7 @@ int main(int argc, char** argv) {
   t.option("--tile", w.tile, "Size of one texture tile on inner faces, as a fraction of the model's diagonal");
   t.option("--strength", w.strength, "Force that an area of 1 withstands; a bond's strength is this times its area");
   t.choice("--up", w.up, {"y", "z"}, "Of a .glb or .usda: which axis of the model is up");
-  t.option("--bonds", w.bonds, "Of a .glb or .usda: also write pieces, bonds and clusters to this JSON file");
+  t.output_option("--bonds", w.bonds, "Of a .glb or .usda: also write pieces, bonds and clusters to this JSON file");
   t.output("pieces.glb, pieces.usda, or a folder; made when it is not there", {"a folder", ".glb", ".usda"});
   return t.run(argc, argv, [&] {
     check(w, t.output_path);

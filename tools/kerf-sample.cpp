@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
   t.option("--grid", grid, "Of a volume: the grid's name");
   t.option("--iso", iso, "Of a volume: the surface's level (0 of a level set, 0.5 of a fog volume)");
   t.option("--adaptivity", adaptivity, "Of a volume: 0 to 1, larger triangles where its surface is flat");
-  t.option("--surface", surface, "Of a volume: also write its surface (PLY), for kerf-graph and kerf-crack");
+  t.output_option("--surface", surface, "Of a volume: also write its surface (PLY), for kerf-graph and kerf-crack");
   t.output("Nodes as PCD (or .ply)", {".pcd", ".ply"});
   return t.run(argc, argv, [&] {
     geo::SampleOptions options;

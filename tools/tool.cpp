@@ -180,8 +180,13 @@ void Tool::choice(const std::string& names, std::string& value, const std::vecto
 void Tool::flag(const std::string& names, bool& value, const std::string& help) {
   parser_->app.add_flag(names, value, help);
 }
+void Tool::output_option(const std::string& names, std::string& path, const std::string& help) {
+  parser_->app.add_option(names, path, help)->check([](const std::string& text) {
+    return std::string(text.empty() ? "the name is empty; give one, or leave the option out" : "");
+  });
+}
 void Tool::output(const std::string& help, std::vector<std::string> endings) {
-  parser_->app.add_option("-o,--output", output_path, help);
+  output_option("-o,--output", output_path, help);
   endings_ = std::move(endings);
 }
 

@@ -41,6 +41,9 @@ class Tool {
   void choice(const std::string& names, std::string& value, const std::vector<std::string>& choices,
               const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
+  /// For the name of a file or folder to be written. An empty one, as of a shell variable that is
+  /// not set, is refused.
+  void output_option(const std::string& names, std::string& path, const std::string& help);
   /// -o/--output. Without it, output goes to standard output, binary output only where that is no
   /// terminal. With `endings`, such as ".ply", names with the ending of another format are refused.
   void output(const std::string& help, std::vector<std::string> endings = {});

@@ -558,6 +558,9 @@ simulation)
   for tool in kerf-info kerf-repair "kerf-sample --spacing 20%" "kerf-score -o x" "kerf-pieces -o x" "kerf-view -o x.png" "kerf-sim -o x" "kerf-crack cube.ply -o x --front"; do
     expect 66 "name of an input file is empty" $tool ""
   done
+  for tool in "kerf-sim s.toml -o" "kerf-sample cube.ply --spacing 20% -o" "kerf-live cube.ply --record" "kerf-pieces cube.ply -o x.glb --bonds"; do
+    expect 2 "the name is empty; give one" $tool ""
+  done
   expect 73 "holds a run already" kerf-sim s.toml -o whole
   # Up is where gravity comes from.
   kerf-sim -q s.toml -o upright --frames 1 --set gravity=[0,-9.81,0] && kerf-sim -q s.toml -o aslant --frames 1 --set gravity=[0,-9.81,1] || fail "gravity along y"

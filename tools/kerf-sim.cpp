@@ -107,7 +107,7 @@ class RecordedRun {
       done.outcome.stats.write_seconds = waited + writing.lap();
       total_ += done.outcome.stats;
       writer_.add(std::move(done));
-      if (has_checkpoint(frame) || frame == last) {
+      if (setup_.scene.has_checkpoint(frame) || frame == last) {
         write_checkpoint(
             [&](std::ostream& out) { geo::write_checkpoint(out, run_.body(), run_.state(), setup_.fingerprint); });
         if (frame < last) run_ = resume(setup_, folder_, std::move(run_));
@@ -119,10 +119,6 @@ class RecordedRun {
   }
 
  private:
-  bool has_checkpoint(int frame) const {
-    const auto& more = setup_.scene.checkpoints;
-    return frame % setup_.scene.checkpoint_every == 0 || std::binary_search(more.begin(), more.end(), frame);
-  }
   geo::FrameStats advance_frame(int frame, int last, const Forecast& forecast, const geo::Progress& progress) {
     const std::string phase =
         "frame " + std::to_string(frame) + " of " + std::to_string(last) + forecast.left(last - frame + 1);

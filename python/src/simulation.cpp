@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 
 #include "arguments.h"
@@ -218,7 +219,7 @@ geo::FrameStats Simulation::advance(const geo::Progress& progress) {
       stopped = stopped || !progress(phase, done, total);
       return true;
     });
-    if (run_->state().frame % scene->scene.checkpoint_every == 0) checkpoint();
+    if (scene->scene.has_checkpoint(run_->state().frame)) go_on_from_checkpoint();
   } catch (const std::exception& e) {
     failure_ = e.what();
     throw;
@@ -227,7 +228,31 @@ geo::FrameStats Simulation::advance(const geo::Progress& progress) {
   return stats;
 }
 
+geo::Scene Simulation::recording() {
+  if (moved)
+    throw geo::InputError(
+        "move() has replaced keyframes, which the recording would need; use add_blade() and extend()");
+  geo::Scene all = scene->scene;
+  const geo::Scene& now = run().scene();
+  all.blades = now.blades, all.grips = now.grips, all.pulls = now.pulls, all.changes = now.changes;
+  // With one key, a blade or pull has not existed yet.
+  std::erase_if(all.blades, [](const geo::Blade& b) { return b.motion.keys.size() < 2; });
+  std::erase_if(all.pulls, [](const geo::Pull& p) { return p.motion.keys.size() < 2; });
+  all.frames = std::max(1, run().state().frame);
+  std::vector<int> frames;
+  std::set_union(all.checkpoints.begin(), all.checkpoints.end(), checkpoints_.begin(), checkpoints_.end(),
+                 std::back_inserter(frames));
+  all.checkpoints = std::move(frames);
+  return all;
+}
+
 std::string Simulation::checkpoint() {
+  const int frame = run().state().frame;
+  if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
+  return go_on_from_checkpoint();
+}
+
+std::string Simulation::go_on_from_checkpoint() {
   std::ostringstream out;
   geo::write_checkpoint(out, run().body(), run().state(), models.fingerprint);
   auto bytes = std::move(out).str();
@@ -263,6 +288,7 @@ void bind_simulation(py::module_& module) {
                   py::arg("set") = py::none(), py::arg("motions") = py::none(), resume_doc);
   add_views(simulation);
   add_handles(module, simulation);
+  add_hands(module, simulation);
 }
 
 }  // namespace kerf_python

@@ -43,23 +43,32 @@ class Simulation : public std::enable_shared_from_this<Simulation> {
   geo::FrameStats advance(const geo::Progress& progress);
   /// The bytes of a checkpoint, with which this run continues, too.
   std::string checkpoint();
+  /// The scene with all that was added and changed since the run began: it gives this run, to the
+  /// bit. Throws geo::InputError where move() has replaced keyframes.
+  geo::Scene recording();
   /// Drops the snapshots; to be called, with the GIL, by every change.
   void changed();
 
   std::shared_ptr<const Scene> scene;
   RunModels models;
   geo::FrameStats last;  ///< of the last frame
+  bool moved = false;    ///< whether move() has replaced keyframes
   Busy busy;
   py::object positions, displacement, velocities, stress, surface, body, state;  ///< null until made
 
  private:
+  std::string go_on_from_checkpoint();
+
   std::optional<geo::Simulation> run_;
   std::string failure_;
+  std::vector<int> checkpoints_;  // frames after which save() was called, ascending
 };
 
 /// Adds what reads the state of a run.
 void add_views(py::class_<Simulation, std::shared_ptr<Simulation>>& simulation);
 /// Adds blades, grips and obstacles.
 void add_handles(py::module_& module, py::class_<Simulation, std::shared_ptr<Simulation>>& simulation);
+/// Adds what a program adds to a run and changes in it, and the recording of that.
+void add_hands(py::module_& module, py::class_<Simulation, std::shared_ptr<Simulation>>& simulation);
 
 }  // namespace kerf_python

@@ -5,32 +5,14 @@
 #include "bind.h"
 #include "kerf/error.h"
 #include "pose.h"
-#include "simulation.h"
+#include "simulation_handle.h"
 
 namespace kerf_python {
 namespace {
 
 using Class = py::class_<Simulation, std::shared_ptr<Simulation>>;
 
-enum class Kind { blade, grip, obstacle };
 constexpr const char* kind_names[] = {"blade", "grip", "obstacle"};
-
-// One object of a run, which it keeps alive.
-template <Kind kind>
-struct Handle {
-  std::shared_ptr<Simulation> simulation;
-  std::size_t index;
-};
-
-template <Kind kind>
-const auto& objects_of(const geo::Scene& scene) {
-  if constexpr (kind == Kind::blade)
-    return scene.blades;
-  else if constexpr (kind == Kind::grip)
-    return scene.grips;
-  else
-    return scene.obstacles;
-}
 
 template <Kind kind>
 std::size_t index_of(const geo::Scene& scene, py::handle which) {
@@ -56,6 +38,7 @@ void move(const Handle<kind>& handle, py::object to) {
   const auto pose = pose_from(to, "pose");
   auto& self = *handle.simulation;
   const Writing writing(self.busy);
+  self.moved = true;
   if constexpr (kind == Kind::blade)
     self.run().move_blade(handle.index, pose);
   else if constexpr (kind == Kind::grip)
@@ -73,20 +56,23 @@ py::class_<Handle<kind>> bind_handle(py::module_& module, const char* name, cons
           "pose",
           [](const Handle<kind>& h) {
             const Reading reading(h.simulation->busy);
-            const auto& run = h.simulation->run();
-            return pose_to(objects_of<kind>(run.scene())[h.index].motion.at(run.state().time));
+            return pose_to(scene_object(h).motion.at(h.simulation->run().state().time));
           },
           "Its pose now: position and quaternion (w, x, y, z), relative as in the scene's motions.")
       .def_property_readonly(
           "keys",
           [](const Handle<kind>& h) {
             const Reading reading(h.simulation->busy);
-            return keys_to(objects_of<kind>(h.simulation->run().scene())[h.index].motion);
+            return keys_to(scene_object(h).motion);
           },
-          "Its keyframes, (k, 8): time, x, y, z, axis, degrees; as move() has set them.");
+          "Its keyframes, (k, 8): time, x, y, z, axis, degrees; as move() or extend() has set them.");
   if constexpr (kind != Kind::grip)
     handle.def_property_readonly(
-        "name", [](const Handle<kind>& h) { return objects_of<kind>(h.simulation->scene->scene)[h.index].name; },
+        "name",
+        [](const Handle<kind>& h) {
+          const Reading reading(h.simulation->busy);
+          return scene_object(h).name;
+        },
         "Its name in the scene.");
   return handle;
 }
@@ -96,7 +82,8 @@ void add_access(Class& simulation, const char* doc) {
   simulation.def(
       kind_names[static_cast<int>(kind)],
       [](Simulation& self, py::object which) {
-        return Handle<kind>{self.shared_from_this(), index_of<kind>(self.scene->scene, which)};
+        const Reading reading(self.busy);
+        return Handle<kind>{self.shared_from_this(), index_of<kind>(self.run().scene(), which)};
       },
       py::arg("which"), doc);
 }
@@ -115,6 +102,24 @@ py::dict motions_of(Simulation& self) {
   return out;
 }
 
+void extend(const Handle<Kind::blade>& handle, py::object to) {
+  const auto pose = pose_from(to, "pose");
+  const Writing writing(handle.simulation->busy);
+  auto& run = handle.simulation->run();
+  require_present_end(scene_object(handle).motion, run.state(), "blade");
+  run.extend_blade(handle.index, 1, pose);
+}
+
+void end(const Handle<Kind::grip>& handle) {
+  const Writing writing(handle.simulation->busy);
+  handle.simulation->run().end_grip(handle.index);
+}
+
+constexpr const char* extend_blade_doc =
+    "Moves a blade that add_blade() made to this pose by the end of the next frame; it cuts on its way, and is "
+    "removed\n"
+    "after that frame unless this is called again. It keeps the keyframes, so that write_recording() holds the whole\n"
+    "motion. pose: as for move(). Raises InputError where the blade does not exist now.";
 constexpr const char* move_blade_doc =
     "Moves it from its present pose to this one by the end of the next frame; it cuts on its way, and is removed "
     "after\n"
@@ -134,10 +139,10 @@ void add_handles(py::module_& module, Class& simulation) {
           "points",
           [](const Handle<Kind::blade>& h) {
             const Reading reading(h.simulation->busy);
-            const auto& run = h.simulation->run();
-            return moved_points(run.scene().blades[h.index].at(run.state().time));
+            return moved_points(scene_object(h).at(h.simulation->run().state().time));
           },
           "World positions of its edge now, (n, 3) float64.")
+      .def("extend", &extend, py::arg("pose"), extend_blade_doc)
       .def_property_readonly(
           "force",
           [](const Handle<Kind::blade>& h) {
@@ -146,7 +151,8 @@ void add_handles(py::module_& module, Class& simulation) {
             return point(h.index < forces.size() ? forces[h.index] : geo::Vec3(geo::Vec3::Zero()));
           },
           "Mean force of the material on it in the last frame, (3,) float64, N.");
-  bind_handle<Kind::grip>(module, "GripHandle", "A grip of a run; see Simulation.grip().", move_other_doc);
+  bind_handle<Kind::grip>(module, "GripHandle", "A grip of a run; see Simulation.grip().", move_other_doc)
+      .def("end", &end, "Lets go, from now on.");
   bind_handle<Kind::obstacle>(module, "ObstacleHandle", "An obstacle of a run; see Simulation.obstacle().",
                               move_other_doc);
   add_access<Kind::blade>(simulation, "The blade of this name or number. Raises InputError.");

@@ -137,6 +137,8 @@ class Case:
             return kerf.Simulation(self.object("Scene"), models=self.object("Solid"))
         if name in ("BladeHandle", "GripHandle", "ObstacleHandle"):
             return getattr(self.object("Simulation"), name[:-6].lower())(0)
+        if name == "PullHandle":
+            return self.object("Simulation").add_pull([0.5, 0.5, 0.5], [0.5, 0.5, 0.5])
         if name in ("Blade", "Grip", "SceneObstacle", "SceneBody"):
             return getattr(self.object("Scene"), {"Blade": "blades", "Grip": "grips", "SceneObstacle": "obstacles", "SceneBody": "bodies"}[name])[0]
         return None

@@ -1,6 +1,7 @@
 """Scenes and runs: against kerf-sim byte for byte, a knife that Python drives, checkpoints, bad input."""
 import os
 import pathlib
+import random
 import shutil
 import subprocess
 import tempfile
@@ -234,6 +235,107 @@ class Runs(unittest.TestCase):
             kerf.Simulation(SCENE)
         with self.assertRaises((kerf.InputError, TypeError)):
             run.run(-1)
+
+
+class Hands(unittest.TestCase):
+    """What a script adds to a run, and the recording of it."""
+
+    def act(self, run, dice, folder, frames):
+        """Adds and changes at random; returns positions and surface after each frame."""
+        cuts, springs, pins, seen = [], [], [], []
+        for frame in range(frames):
+            if dice.random() < 0.5:
+                at = [dice.uniform(0.3, 0.7), 0.5, dice.uniform(0.6, 1.2)]
+                wedge = {"thickness": 0.02, "back": [0, 0, 0.2]} if dice.random() < 0.5 else {}
+                cuts.append((run.add_blade([[0, -0.8, 0], [0, 0.1, 0.003], [0, 0.8, 0.01]], (at, (1, 0, 0, 0.03)), limit=0.7, **wedge), at))
+            if dice.random() < 0.5:
+                at = [1, dice.uniform(0.2, 0.8), dice.uniform(0.2, 0.8)]
+                springs.append((run.add_pull(at, at, stiffness=dice.uniform(10, 1e4)), at))
+            if dice.random() < 0.3:
+                pins.append(run.add_grip([0.8, -0.1, -0.1], [1.1, 1.1, dice.uniform(0.1, 0.4)]))
+            if pins and dice.random() < 0.3:
+                pins.pop().end()
+            if dice.random() < 0.3:
+                run.change(young=dice.uniform(2e4, 8e4), gravity=[0, 0, dice.uniform(-9, 0)], **({"friction": 0.2} if dice.random() < 0.5 else {}))
+            cuts = [cut for cut in cuts if dice.random() < 0.8]  # the others end here
+            for cut, at in cuts:
+                at[2] -= dice.uniform(0, 0.2)
+                cut.extend((at, (1, 0, 0, 0.03)))
+            for spring, at in springs:
+                spring.extend(np.add(at, [0.1, 0.05, 0.1]))
+            run.step()
+            if dice.random() < 0.3:
+                run.save(folder / "half.kerf")  # the run goes on from what it has written
+            seen.append((run.positions.copy(), run.surface().vertices.copy()))
+        return seen
+
+    def test_recordings_give_the_same_frames(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            cut = 0
+            for seed in range(8):
+                run = simulation(SCENE)
+                seen = self.act(run, random.Random(seed), folder, 5)
+                cut += run.total.split.edges_cut
+                run.write_recording(folder / "recorded.toml")
+                again = kerf.Simulation(folder / "recorded.toml", models=model())
+                self.assertEqual(again.scene.frames, 5)
+                for frame, (positions, surface) in enumerate(seen):
+                    again.step()
+                    self.assertEqual(again.positions.tobytes(), positions.tobytes(), f"seed {seed}, frame {frame}")
+                    self.assertEqual(again.surface().vertices.tobytes(), surface.tobytes(), f"seed {seed}, frame {frame}")
+            self.assertGreater(cut, 0)
+
+    @unittest.skipUnless(shutil.which("kerf-sim", path=os.environ.get("KERF_TOOLS", "")), "needs kerf-sim in KERF_TOOLS")
+    def test_kerf_sim_replays_a_recording(self):
+        tool = shutil.which("kerf-sim", path=os.environ.get("KERF_TOOLS", ""))
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "scene.toml").write_text(SCENE)
+            model().save(folder / "block.ply")
+            run = kerf.Simulation(folder / "scene.toml")
+            self.act(run, random.Random(3), folder, 4)
+            run.write_frame(folder / "frame.ply")
+            run.write_recording(folder / "recorded.toml")
+            subprocess.run([tool, folder / "recorded.toml", "-o", folder / "run"], check=True, capture_output=True)
+            self.assertEqual((folder / "frame.ply").read_bytes(), run_path(folder / "run/frames", 4).read_bytes())
+
+    def test_what_is_added(self):
+        run = simulation()
+        pin = run.add_grip([0.8, -0.1, -0.1], [1.1, 1.1, 0.3])
+        blade = run.add_blade([[0, -0.8, 0], [0, 0.8, 0]], [0.5, 0, 1.2], name="mine")
+        spring = run.add_pull([1, 0.5, 0.5], [1, 0.5, 0.5], stiffness=100, node=3)
+        self.assertEqual((run.blade("mine").index, blade.name, blade.index, pin.index, spring.index), (1, "mine", 1, 1, 0))
+        self.assertEqual((spring.node, spring.stiffness), (3, 100))
+        spring.extend([2, 0.5, 0.5])
+        blade.extend([0.5, 0, 0.7])
+        run.step()
+        self.assertLess(spring.force[0], 0)  # it is pulled back
+        self.assertEqual((len(spring.keys), len(blade.keys)), (2, 2))
+        run.step()
+        with self.assertRaisesRegex(kerf.InputError, "blade does not exist now"):
+            blade.extend([0.5, 0, 0.6])
+        with self.assertRaisesRegex(kerf.InputError, "pull does not exist now"):
+            spring.extend([2, 0.5, 0.5])
+
+    def test_refused(self):
+        run, line = simulation(), [[0, -1, 0], [0, 1, 0]]
+        for bad in (lambda: run.add_blade(line[:1], [0, 0, 0]), lambda: run.add_blade(line, [0, 0]), lambda: run.add_blade(line, [0, 0, 0], closed=True),
+                    lambda: run.add_blade(line, [0, 0, 0], thickness=0.1), lambda: run.add_blade(line, [0, 0, 0], limit=0),
+                    lambda: run.add_grip([0, 0, 1], [1, 1, 0]), lambda: run.add_pull([0, 0, 0], [0, 0, 0], stiffness=-1),
+                    lambda: run.add_pull([0, 0, 0], [0, 0, 0], node=10**6), lambda: run.change(young=-1), lambda: run.change(step=0),
+                    lambda: run.change(gravity=[0, 1])):
+            with self.assertRaises(kerf.InputError):
+                bad()
+        with self.assertRaisesRegex(TypeError, "young"):
+            run.change(yuong=1)
+        with self.assertRaises(TypeError):
+            run.add_blade(line, [0, 0, 0], thicknes=1)
+        self.assertEqual((len(run.motions), run.frame), (2, 0))  # nothing was added
+        run.blade(0).move([0, 0, 3])
+        with self.assertRaisesRegex(kerf.InputError, "replaced keyframes"):
+            run.write_recording("x.toml")
+        self.assertFalse(os.path.exists("x.toml"))
 
 
 def run_path(folder, frame):

@@ -39,8 +39,8 @@ struct Motion {
   };
   std::vector<Key> keys;  ///< ascending in time; empty: the object does not move
 
-  /// True between the first and the last key, both included.
-  bool active(double time) const { return !keys.empty() && time >= keys.front().time && time <= keys.back().time; }
+  /// True between the first and the last key, both included. False with fewer than two keys.
+  bool active(double time) const { return keys.size() > 1 && time >= keys.front().time && time <= keys.back().time; }
   /// Pose at a time in seconds. Positions are interpolated linearly. Rotations are interpolated by
   /// angle where both keys have the same axis (whole turns included), else spherically. Constant
   /// before the first and after the last key; the identity without keys.
@@ -194,6 +194,8 @@ struct Scene {
 
   /// Number of equal time steps in a frame: the fewest that are at most `dt` long.
   int steps_per_frame() const;
+  /// Whether a checkpoint follows this frame, from which the run goes on.
+  bool has_checkpoint(int frame) const;
 };
 
 }  // namespace geo

@@ -1,0 +1,44 @@
+// One blade, grip, obstacle or pull of a run, as Python holds it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "simulation.h"
+
+namespace kerf_python {
+
+/// Kinds of objects that act on the bodies of a run.
+enum class Kind { blade, grip, obstacle, pull };
+
+/// One object of a run, which it keeps alive.
+template <Kind kind>
+struct Handle {
+  std::shared_ptr<Simulation> simulation;
+  std::size_t index;
+};
+
+/// The objects of a kind in a scene.
+template <Kind kind>
+const auto& objects_of(const geo::Scene& scene) {
+  if constexpr (kind == Kind::blade)
+    return scene.blades;
+  else if constexpr (kind == Kind::grip)
+    return scene.grips;
+  else if constexpr (kind == Kind::obstacle)
+    return scene.obstacles;
+  else
+    return scene.pulls;
+}
+
+/// The object itself. To be called while the run is not changed.
+template <Kind kind>
+const auto& scene_object(const Handle<kind>& handle) {
+  return objects_of<kind>(handle.simulation->run().scene())[handle.index];
+}
+
+/// Throws geo::InputError unless the last key of a motion is at the present time: keys after a
+/// pause would let the object have existed meanwhile. `what`: the object, for the message.
+void require_present_end(const geo::Motion& motion, const geo::RunState& now, const char* what);
+
+}  // namespace kerf_python

@@ -7,11 +7,11 @@ target_compile_options(kerf_flags INTERFACE -ffp-contract=off)
 # gcc 12 warns of impossible overlaps inside std::string at -O3 (its bug 105329).
 target_compile_options(kerf_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 target_link_options(kerf_flags INTERFACE -Wl,--as-needed)
-# gcc 12 also warns of impossible lengths inside std::string (its bug 105651), and of types of anonymous namespaces where
-# sources are compiled as one. Targets that join many strings have these warnings off.
+# gcc 12 also warns of impossible lengths and bounds inside std::string (its bug 105651), and of types of anonymous
+# namespaces where sources are compiled as one. Targets that join many strings have these warnings off.
 function(kerf_quiet target)
   target_compile_options(${target} PRIVATE
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-stringop-overread -Wno-subobject-linkage>)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow -Wno-stringop-overread -Wno-array-bounds -Wno-subobject-linkage>)
 endfunction()
 if(KERF_WERROR)
   target_compile_options(kerf_flags INTERFACE -Werror)

@@ -1,5 +1,5 @@
 // The preconditioner of conjugate gradients, additive on two levels: overlapping Schwarz subdomains
-// of a dozen nodes, and a coarse space in which aggregates of a hundred nodes move as rigid bodies.
+// of some six nodes, and a coarse space in which aggregates of a hundred nodes move as rigid bodies.
 #pragma once
 
 #include <optional>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace geo {
 
@@ -19,11 +20,17 @@ Pose SceneObstacle::pose(double time) const {
   return {moved * place.position, moved.rotation * place.rotation};
 }
 
-// 1e-9 keeps rounding from adding a step where dt divides the frame.
+void Scene::add_change(SceneChange change) {
+  const auto later = std::upper_bound(changes.begin(), changes.end(), change.time,
+                                      [](double time, const SceneChange& c) { return time < c.time; });
+  changes.insert(later, std::move(change));
+}
+
 bool Scene::has_checkpoint(int frame) const {
   return frame % checkpoint_every == 0 || std::binary_search(checkpoints.begin(), checkpoints.end(), frame);
 }
 
+// 1e-9 keeps rounding from adding a step where dt divides the frame.
 int Scene::steps_per_frame() const { return std::max(1, static_cast<int>(std::ceil(1 / frame_rate / dt - 1e-9))); }
 
 }  // namespace geo

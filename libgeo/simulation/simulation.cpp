@@ -479,12 +479,15 @@ void Simulation::extend_pull(std::size_t pull, int frame, const Vec3& position) 
   append(impl_->scene.pulls.at(pull).motion, {impl_->time_of(state().frame + frame), position, Vec3::UnitZ(), 0});
 }
 
-void Simulation::end_grip(std::size_t grip) { impl_->scene.grips.at(grip).until = impl_->time_of(state().frame); }
+void Simulation::end_grip(std::size_t grip) {
+  double& until = impl_->scene.grips.at(grip).until;
+  until = std::min(until, impl_->time_of(state().frame));
+}
 
 void Simulation::change(SceneChange change) {
   change.time = impl_->time_of(state().frame);
   if (const auto wrong = unfit(change); !wrong.empty()) throw InputError(wrong);
-  impl_->scene.changes.push_back(change);
+  impl_->scene.add_change(change);
 }
 
 FrameStats Simulation::advance_frame(const Progress& progress) {

@@ -82,6 +82,12 @@ std::string override_of(const std::string& key, py::handle value, bool literal) 
   return path == text && !literal ? toml_of(py::str(text), key) : path;
 }
 
+// Empty where it does not exist any more.
+std::filesystem::path current_folder() {
+  std::error_code error;
+  return std::filesystem::current_path(error);
+}
+
 std::shared_ptr<const Scene> parsed(std::string text, std::string name, std::string folder, geo::SceneOverrides o) {
   py::gil_scoped_release release;
   return std::make_shared<const Scene>(std::move(text), std::move(name), std::move(folder), std::move(o));
@@ -90,7 +96,7 @@ std::shared_ptr<const Scene> parsed(std::string text, std::string name, std::str
 }  // namespace
 
 Scene::Scene(std::string t, std::string n, std::string f, geo::SceneOverrides o)
-    : text(std::move(t)), name(std::move(n)), folder(std::move(f)), overrides(std::move(o)) {
+    : text(std::move(t)), name(std::move(n)), folder(std::move(f)), place(current_folder()), overrides(std::move(o)) {
   scene = geo::parse_scene(text, name, overrides, folder);
   for (auto& body : scene.bodies)
     if (const std::filesystem::path mesh = body.mesh; mesh.is_relative())

@@ -1,6 +1,7 @@
 // Scenes of the module: read with overrides, which may be added later.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@ struct Scene {
   /// GIL.
   Scene(std::string t, std::string n, std::string f, geo::SceneOverrides o);
   std::string text, name, folder;
+  std::filesystem::path place;  ///< the current folder when it was made
   geo::SceneOverrides overrides;
   geo::Scene scene;
 };

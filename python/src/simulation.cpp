@@ -155,7 +155,8 @@ constexpr const char* run_doc =
 constexpr const char* resume_doc =
     "Continues a run from a checkpoint, of save() or of kerf-sim. scene, models, set, keys: the same as of that run.\n"
     "motions: what Simulation.motions had, where objects were moved by hand. The frames are the same as without the\n"
-    "interruption, byte for byte. Raises InputError for another scene or model, or a damaged file.";
+    "interruption, byte for byte. Raises InputError for another scene or model, a damaged file, and a run to which\n"
+    "something was added: run its recording again.";
 
 }  // namespace
 
@@ -198,7 +199,9 @@ Simulation::Simulation(std::shared_ptr<const Scene> source, RunModels run_models
 
 Simulation::Simulation(std::shared_ptr<const Scene> source, RunModels run_models, const geo::Scene& moved_scene,
                        const std::string& checkpoint)
-    : scene(std::move(source)), models(std::move(run_models)) {
+    : scene(std::move(source)),
+      models(std::move(run_models)),
+      unrecordable("the run was resumed, and its earlier checkpoints are not known; record a run from its begin") {
   auto c = geo::read_checkpoint(geo::KerfFile(geo::Input(checkpoint, "checkpoint")));
   if (c.scene != models.fingerprint)
     throw geo::InputError("the checkpoint was begun with another scene, model or setting; give the same ones");
@@ -219,7 +222,7 @@ geo::FrameStats Simulation::advance(const geo::Progress& progress) {
       stopped = stopped || !progress(phase, done, total);
       return true;
     });
-    if (scene->scene.has_checkpoint(run_->state().frame)) go_on_from_checkpoint();
+    if (scene->scene.has_checkpoint(run_->state().frame)) go_on_from_checkpoint(models.fingerprint);
   } catch (const std::exception& e) {
     failure_ = e.what();
     throw;
@@ -229,16 +232,14 @@ geo::FrameStats Simulation::advance(const geo::Progress& progress) {
 }
 
 geo::Scene Simulation::recording() {
-  if (moved)
-    throw geo::InputError(
-        "move() has replaced keyframes, which the recording would need; use add_blade() and extend()");
-  geo::Scene all = scene->scene;
-  const geo::Scene& now = run().scene();
-  all.blades = now.blades, all.grips = now.grips, all.pulls = now.pulls, all.changes = now.changes;
-  // With one key, a blade or pull has not existed yet.
-  std::erase_if(all.blades, [](const geo::Blade& b) { return b.motion.keys.size() < 2; });
-  std::erase_if(all.pulls, [](const geo::Pull& p) { return p.motion.keys.size() < 2; });
-  all.frames = std::max(1, run().state().frame);
+  if (!unrecordable.empty()) throw geo::InputError(unrecordable);
+  geo::Scene all = geo::recording_of(scene->scene, run());
+  const auto make_absolute = [&](std::string& path) {
+    if (!path.empty()) path = (scene->place / path).string();
+  };
+  for (auto& body : all.bodies) make_absolute(body.mesh);
+  for (auto& obstacle : all.obstacles) make_absolute(obstacle.file);
+  for (auto& [path, body] : all.score_files) make_absolute(path);
   std::vector<int> frames;
   std::set_union(all.checkpoints.begin(), all.checkpoints.end(), checkpoints_.begin(), checkpoints_.end(),
                  std::back_inserter(frames));
@@ -249,12 +250,14 @@ geo::Scene Simulation::recording() {
 std::string Simulation::checkpoint() {
   const int frame = run().state().frame;
   if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
-  return go_on_from_checkpoint();
+  // A run to which something was added is not that of its scene: resume() refuses its checkpoints.
+  return go_on_from_checkpoint(acted ? geo::fingerprint(std::to_string(models.fingerprint) + " and more")
+                                     : models.fingerprint);
 }
 
-std::string Simulation::go_on_from_checkpoint() {
+std::string Simulation::go_on_from_checkpoint(std::uint64_t fingerprint) {
   std::ostringstream out;
-  geo::write_checkpoint(out, run().body(), run().state(), models.fingerprint);
+  geo::write_checkpoint(out, run().body(), run().state(), fingerprint);
   auto bytes = std::move(out).str();
   auto c = geo::read_checkpoint(geo::KerfFile(geo::Input(bytes, "checkpoint")));
   run_->restore(std::move(c.body), std::move(c.state));
@@ -281,9 +284,9 @@ void bind_simulation(py::module_& module) {
       .def("run", &run_frames, py::arg("frames") = py::none(), py::kw_only(), py::arg("progress") = py::none(),
            py::arg("each") = py::none(), run_doc)
       .def("save", &save, py::arg("path"),
-           "Writes a checkpoint (.kerf), from which the run continues exactly; with motions, where objects were moved "
+           "Writes a checkpoint (.kerf), from which resume() continues exactly; with motions, where objects were moved "
            "by\n"
-           "hand. Raises OutputError.")
+           "hand. It does not hold what was added or changed: resume() then refuses it. Raises OutputError.")
       .def_static("resume", &resumed, py::arg("path"), py::arg("scene"), py::kw_only(), py::arg("models") = py::none(),
                   py::arg("set") = py::none(), py::arg("motions") = py::none(), resume_doc);
   add_views(simulation);

@@ -44,7 +44,7 @@ class Simulation : public std::enable_shared_from_this<Simulation> {
   /// The bytes of a checkpoint, with which this run continues, too.
   std::string checkpoint();
   /// The scene with all that was added and changed since the run began: it gives this run, to the
-  /// bit. Throws geo::InputError where move() has replaced keyframes.
+  /// bit. Paths are absolute. Throws geo::InputError where it is not possible.
   geo::Scene recording();
   /// Drops the snapshots; to be called, with the GIL, by every change.
   void changed();
@@ -52,12 +52,13 @@ class Simulation : public std::enable_shared_from_this<Simulation> {
   std::shared_ptr<const Scene> scene;
   RunModels models;
   geo::FrameStats last;  ///< of the last frame
-  bool moved = false;    ///< whether move() has replaced keyframes
+  bool acted = false;    ///< whether something was added or changed that the scene does not have
   Busy busy;
   py::object positions, displacement, velocities, stress, surface, body, state;  ///< null until made
+  std::string unrecordable;  ///< why recording() is not possible; empty where it is
 
  private:
-  std::string go_on_from_checkpoint();
+  std::string go_on_from_checkpoint(std::uint64_t fingerprint);
 
   std::optional<geo::Simulation> run_;
   std::string failure_;

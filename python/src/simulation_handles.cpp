@@ -38,7 +38,8 @@ void move(const Handle<kind>& handle, py::object to) {
   const auto pose = pose_from(to, "pose");
   auto& self = *handle.simulation;
   const Writing writing(self.busy);
-  self.moved = true;
+  self.unrecordable =
+      "move() was called, which a recording cannot hold; give the scene keyframes, or use add_blade() and extend()";
   if constexpr (kind == Kind::blade)
     self.run().move_blade(handle.index, pose);
   else if constexpr (kind == Kind::grip)
@@ -105,6 +106,7 @@ py::dict motions_of(Simulation& self) {
 void extend(const Handle<Kind::blade>& handle, py::object to) {
   const auto pose = pose_from(to, "pose");
   const Writing writing(handle.simulation->busy);
+  handle.simulation->acted = true;
   auto& run = handle.simulation->run();
   require_present_end(scene_object(handle).motion, run.state(), "blade");
   run.extend_blade(handle.index, 1, pose);
@@ -112,6 +114,7 @@ void extend(const Handle<Kind::blade>& handle, py::object to) {
 
 void end(const Handle<Kind::grip>& handle) {
   const Writing writing(handle.simulation->busy);
+  handle.simulation->acted = true;
   handle.simulation->run().end_grip(handle.index);
 }
 

@@ -19,7 +19,9 @@ using Class = py::class_<Simulation, std::shared_ptr<Simulation>>;
 template <Kind kind, class Add>
 Handle<kind> added(Simulation& self, const Add& add) {
   const Writing writing(self.busy);
-  return {self.shared_from_this(), add(self.run())};
+  const auto index = add(self.run());
+  self.acted = true;
+  return {self.shared_from_this(), index};
 }
 
 Handle<Kind::blade> add_blade(Simulation& self, py::object points, py::object pose, const py::kwargs& options) {
@@ -58,7 +60,10 @@ Handle<Kind::pull> add_pull(Simulation& self, py::object at, py::object to, doub
   if (!(stiffness >= 0 && stiffness <= 1e15)) throw geo::InputError("stiffness: give a number from 0 to 1e15");
   if (!node.is_none()) {
     const auto index = integer_from(node, "node");
-    if (index < 0 || index > 0xfffffffe) throw geo::InputError("node: a pull holds a node that does not exist");
+    const Reading reading(self.busy);
+    const auto nodes = static_cast<std::int64_t>(self.run().body().nodes.size());
+    if (index < 0 || index >= nodes)
+      throw geo::InputError("node: give a number from 0 to " + std::to_string(nodes - 1));
     pull.node = static_cast<std::uint32_t>(index);
   }
   return added<Kind::pull>(self, [&](geo::Simulation& run) {
@@ -91,10 +96,12 @@ void change(Simulation& self, const py::kwargs& values) {
   keywords.finish();
   const Writing writing(self.busy);
   self.run().change(changes);
+  self.acted = true;
 }
 
 void write_recording(Simulation& self, const Path& path) {
   const Reading reading(self.busy);
+  geo::require_writable(path);
   without_gil([&] {
     const auto folder = std::filesystem::absolute(path.text).parent_path().string();
     const auto scene = self.recording();
@@ -148,12 +155,15 @@ constexpr const char* change_doc =
 constexpr const char* write_recording_doc =
     "Writes the scene with all that was added and changed so far (.toml). A new run of it has the same frames, byte "
     "for\n"
-    "byte; so has kerf-sim, where the models are the files that the scene names. Raises InputError where move() was\n"
-    "called: it replaces keyframes. Raises OutputError.";
+    "byte; so has kerf-sim, where the models are the files that the scene names. Raises InputError after move(), "
+    "which\n"
+    "replaces keyframes, and in a run from resume(). Raises OutputError.";
 
 }  // namespace
 
 void require_present_end(const geo::Motion& motion, const geo::RunState& now, const char* what) {
+  if (!motion.keys.empty() && motion.keys.back().time > now.time)
+    throw geo::InputError(std::string("the ") + what + " has a key later than now: call step() first");
   if (motion.keys.empty() || motion.keys.back().time != now.time)
     throw geo::InputError(std::string("the ") + what + " does not exist now: it ends with its last key; add another");
 }

@@ -269,6 +269,8 @@ void bind_frame_stats(py::module_& module) {
       .def_readonly("energy", &S::energy, "Elastic energy at the frame's end, J.")
       .def_property_readonly("blade_force", forces(&S::blade_force),
                              "Mean force of the material on each blade, (b, 3), N.")
+      .def_property_readonly("pull_force", forces(&S::pull_force),
+                             "Mean force of the material on each pull, (p, 3), N.")
       .def_property_readonly("obstacle_force", forces(&S::obstacle_force),
                              "Mean force of the bodies on each obstacle, then the ground, (o, 3), N.")
       .def_property_readonly("obstacle_torque", forces(&S::obstacle_torque),

@@ -34,7 +34,7 @@ constexpr double slower = 10, larger = 4;
 constexpr double slower = 1, larger = 1;
 #endif
 
-/// The current case, for error reports.
+/// A case, for error reports.
 struct Case {
   std::string family, bytes;
   std::uint64_t seed = 0;
@@ -47,7 +47,8 @@ struct Case {
     return path;
   }
 };
-inline Case current;
+/// The current one. It is never destroyed: sanitizers report at the very end of the program.
+inline Case& current = *new Case;
 
 inline void tell_and_die() {
   std::fprintf(stderr, "fuzz: %s, seed %llu: crashed or hangs; its bytes are in %s\n", current.family.c_str(),

@@ -38,6 +38,14 @@ keys = [[0.0, 0, 0, 0, 0, 0, 1, 0]]
 """
 
 
+# A change in the middle of a run.
+LATER = """
+[[change]]
+time = 0.09
+gravity = [0, 0, 9]
+"""
+
+
 def model():
     return kerf.Solid(*block())
 
@@ -250,13 +258,15 @@ class Hands(unittest.TestCase):
                 cuts.append((run.add_blade([[0, -0.8, 0], [0, 0.1, 0.003], [0, 0.8, 0.01]], (at, (1, 0, 0, 0.03)), limit=0.7, **wedge), at))
             if dice.random() < 0.5:
                 at = [1, dice.uniform(0.2, 0.8), dice.uniform(0.2, 0.8)]
-                springs.append((run.add_pull(at, at, stiffness=dice.uniform(10, 1e4)), at))
+                node = int(np.argmin(np.linalg.norm(run.body.nodes.positions - at, axis=1))) if dice.random() < 0.5 else None
+                springs.append((run.add_pull(at, at, stiffness=dice.uniform(10, 1e4), node=node), at))
             if dice.random() < 0.3:
                 pins.append(run.add_grip([0.8, -0.1, -0.1], [1.1, 1.1, dice.uniform(0.1, 0.4)]))
-            if pins and dice.random() < 0.3:
-                pins.pop().end()
+            if pins and dice.random() < 0.4:
+                dice.choice(pins).end()  # a second end() changes nothing
             if dice.random() < 0.3:
-                run.change(young=dice.uniform(2e4, 8e4), gravity=[0, 0, dice.uniform(-9, 0)], **({"friction": 0.2} if dice.random() < 0.5 else {}))
+                run.change(young=dice.uniform(2e4, 8e4), gravity=[0, 0, dice.uniform(-9, 0)],
+                           **({"friction": 0.2, "damping": 1, "accuracy": 0.02, "step": 0.03} if dice.random() < 0.5 else {}))
             cuts = [cut for cut in cuts if dice.random() < 0.8]  # the others end here
             for cut, at in cuts:
                 at[2] -= dice.uniform(0, 0.2)
@@ -274,7 +284,7 @@ class Hands(unittest.TestCase):
             folder = pathlib.Path(name)
             cut = 0
             for seed in range(8):
-                run = simulation(SCENE)
+                run = simulation(SCENE + LATER)
                 seen = self.act(run, random.Random(seed), folder, 5)
                 cut += run.total.split.edges_cut
                 run.write_recording(folder / "recorded.toml")
@@ -309,6 +319,9 @@ class Hands(unittest.TestCase):
         self.assertEqual((spring.node, spring.stiffness), (3, 100))
         spring.extend([2, 0.5, 0.5])
         blade.extend([0.5, 0, 0.7])
+        for late in (lambda: blade.extend([0.5, 0, 0.6]), lambda: run.blade("knife").extend([0.5, 0, 0.6])):
+            with self.assertRaisesRegex(kerf.InputError, "has a key later than now"):
+                late()
         run.step()
         self.assertLess(spring.force[0], 0)  # it is pulled back
         self.assertEqual((len(spring.keys), len(blade.keys)), (2, 2))
@@ -317,6 +330,30 @@ class Hands(unittest.TestCase):
             blade.extend([0.5, 0, 0.6])
         with self.assertRaisesRegex(kerf.InputError, "pull does not exist now"):
             spring.extend([2, 0.5, 0.5])
+
+    def test_changes_hold_up_to_the_next_of_the_scene(self):
+        run = simulation(SCENE + LATER)
+        run.change(gravity=[0, 0, -1])
+        run.step()
+        fall = run.velocities[-1, 2]
+        self.assertLess(fall, 0)
+        run.run(3)
+        self.assertGreater(run.velocities[-1, 2], fall)  # the scene has let gravity act upwards
+
+    def test_checkpoints_do_not_hold_what_was_added(self):
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name) / "a.kerf"
+            run = simulation()
+            run.save(path)
+            later = kerf.Simulation.resume(path, SCENE, models=model())
+            with self.assertRaisesRegex(kerf.InputError, "was resumed"):
+                later.write_recording(pathlib.Path(name) / "x.toml")
+            for act in (lambda: run.change(young=1e4), lambda: run.add_grip([0, 0, 0], [1, 1, 0]), lambda: run.grip(0).end()):
+                run = simulation()
+                act()
+                run.save(path)
+                with self.assertRaisesRegex(kerf.InputError, "another scene"):
+                    kerf.Simulation.resume(path, SCENE, models=model())
 
     def test_refused(self):
         run, line = simulation(), [[0, -1, 0], [0, 1, 0]]
@@ -331,9 +368,15 @@ class Hands(unittest.TestCase):
             run.change(yuong=1)
         with self.assertRaises(TypeError):
             run.add_blade(line, [0, 0, 0], thicknes=1)
-        self.assertEqual((len(run.motions), run.frame), (2, 0))  # nothing was added
+        with tempfile.TemporaryDirectory() as name:  # nothing was added
+            run.write_recording(pathlib.Path(name) / "x.toml")
+            text = (pathlib.Path(name) / "x.toml").read_text()
+            self.assertEqual([text.count(f"[[{kind}]]") for kind in ("blade", "grip", "pull", "change")], [1, 1, 0, 0])
+        with self.assertRaises(kerf.OutputError):
+            run.write_recording("")
+        self.assertEqual((run.add_pull([1, 0, 0], [1, 0, 0]).index, run.add_grip([0, 0, 0], [1, 1, 0]).index), (0, 1))
         run.blade(0).move([0, 0, 3])
-        with self.assertRaisesRegex(kerf.InputError, "replaced keyframes"):
+        with self.assertRaisesRegex(kerf.InputError, "move\\(\\) was called"):
             run.write_recording("x.toml")
         self.assertFalse(os.path.exists("x.toml"))
 

@@ -174,11 +174,11 @@ void Session::obey(const Pin& pin) {
 }
 
 void Session::obey(const Set& set) {
-  if (run_.scene().changes.size() >= bounds_.changes) throw BadMessage("the recording is full; save it and reset");
+  if (changes_.size() >= bounds_.changes) throw BadMessage("the recording is full; save it and reset");
   geo::SceneChange change;
   change.young = set.young, change.damping = set.damping, change.gravity = set.gravity, change.friction = set.friction;
   try {
-    run_.change(change);
+    change_run(change);
   } catch (const geo::InputError& e) {
     throw BadMessage(e.what());
   }
@@ -194,10 +194,16 @@ Effort Session::least_effort() const {
 }
 
 void Session::set_effort(const Effort& effort) {
-  if (run_.scene().changes.size() >= bounds_.changes) return;
+  if (changes_.size() >= bounds_.changes) return;
   geo::SceneChange change;
   change.accuracy = effort.accuracy, change.dt = 1 / run_.scene().frame_rate / effort.steps;
+  change_run(change);
+}
+
+void Session::change_run(geo::SceneChange change) {
+  change.time = run_.state().frame * (1 / setup_.scene.frame_rate);
   run_.change(change);
+  changes_.push_back(change);
 }
 
 void Session::leave(ClientId page) {
@@ -215,14 +221,17 @@ void Session::save() {
   while (!saved_.empty() && (saved_.size() >= bounds_.saved || faces > bounds_.saved_faces))
     faces -= saved_.front().body.surface.face_count(), saved_.erase(saved_.begin());
   saved_.push_back({run_.body(), run_.state(), scene.blades.size(), scene.grips.size(), scene.pulls.size(),
-                    scene.changes.size(), checkpoints_, pins_});
+                    changes_.size(), checkpoints_, pins_});
 }
 
 void Session::restore(Saved saved) {
   const double time = saved.state.frame * (1 / setup_.scene.frame_rate);
-  geo::Scene scene = recording();
+  geo::Scene scene = setup_.scene;
+  const geo::Scene& now = run_.scene();
+  scene.blades = now.blades, scene.grips = now.grips, scene.pulls = now.pulls;
   scene.blades.resize(saved.blades), scene.grips.resize(saved.grips), scene.pulls.resize(saved.pulls);
-  scene.changes.resize(saved.changes);
+  changes_.resize(saved.changes);
+  for (const geo::SceneChange& change : changes_) scene.add_change(change);
   const auto later = [&](const geo::Motion::Key& key) { return key.time > time; };
   for (std::size_t b = setup_.scene.blades.size(); b < scene.blades.size(); ++b)
     std::erase_if(scene.blades[b].motion.keys, later);
@@ -258,7 +267,7 @@ void Session::undo() {
 }
 
 void Session::reset() {
-  saved_.clear(), checkpoints_.clear(), pins_.clear();
+  saved_.clear(), checkpoints_.clear(), pins_.clear(), changes_.clear();
   go_on_from(setup_.scene, start_);
 }
 
@@ -398,10 +407,7 @@ std::string Session::advance(bool whole) {
 }
 
 geo::Scene Session::recording() const {
-  geo::Scene scene = setup_.scene;
-  const geo::Scene& now = run_.scene();
-  scene.blades = now.blades, scene.grips = now.grips, scene.pulls = now.pulls, scene.changes = now.changes;
-  scene.frames = std::max(1, run_.state().frame);
+  geo::Scene scene = geo::recording_of(setup_.scene, run_);
   scene.checkpoints = checkpoints_;
   return scene;
 }

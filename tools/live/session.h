@@ -118,13 +118,15 @@ class Session {
   struct Saved {
     geo::Body body;
     geo::RunState state;
-    std::size_t blades, grips, pulls, changes;
+    std::size_t blades, grips, pulls, changes;  // of the run; changes: by hands and effort
     std::vector<int> checkpoints;
     std::vector<HeldPin> pins;
   };
 
   void save();
   void restore(Saved saved);
+  // Changes values of the run. Throws InputError for values that a scene may not have.
+  void change_run(geo::SceneChange change);
   // Continues as `scene` from a checkpoint, without hands.
   void go_on_from(const geo::Scene& scene, const std::string& checkpoint);
   void require_space() const;
@@ -155,6 +157,7 @@ class Session {
   std::map<Hand, HeldPull> pulls_;
   std::vector<HeldPin> pins_;
   std::map<ClientId, std::uint64_t> taken_;
+  std::vector<geo::SceneChange> changes_;  // by hands and effort
   std::vector<Saved> saved_;
   std::vector<int> checkpoints_;  // frames from which the run went on from its own checkpoint
   std::uint64_t last_stroke_ = 0;

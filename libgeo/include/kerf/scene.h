@@ -194,6 +194,8 @@ struct Scene {
 
   /// Number of equal time steps in a frame: the fewest that are at most `dt` long.
   int steps_per_frame() const;
+  /// Adds a change behind those that are not later.
+  void add_change(SceneChange change);
   /// Whether a checkpoint follows this frame, from which the run goes on.
   bool has_checkpoint(int frame) const;
 };

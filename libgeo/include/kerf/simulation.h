@@ -182,10 +182,11 @@ class Simulation {
   void extend_blade(std::size_t blade, int frame, const Pose& pose);
   /// The same for a pull, whose keys are positions.
   void extend_pull(std::size_t pull, int frame, const Vec3& position);
-  /// Ends a grip at the present time. Throws std::out_of_range for an unknown index.
+  /// Ends a grip at the present time, if it has not ended yet. Throws std::out_of_range for an
+  /// unknown index.
   void end_grip(std::size_t grip);
-  /// Changes values from the present time on; change.time is set to it. The change is appended to
-  /// those of the scene. Throws InputError for values that a scene may not have.
+  /// Changes values from the present time on, up to the scene's next change of the same value;
+  /// change.time is set to it. Throws InputError for values that a scene may not have.
   void change(SceneChange change);
 
   /// The deformed two-sided surface with patch, site and source: by Eq. 1, or as far as contact
@@ -205,5 +206,11 @@ class Simulation {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The scene that a run began with, and all that was added, extended and changed since. A run of it
+/// has the same frames, to the bit, if it goes on from a checkpoint after the same frames
+/// (Scene::checkpoints). Blades and pulls with fewer than two keys, which have not existed, are
+/// left out. Not for runs in which move_blade() and the like have replaced keyframes.
+Scene recording_of(const Scene& original, const Simulation& run);
 
 }  // namespace geo

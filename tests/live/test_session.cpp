@@ -212,6 +212,26 @@ TEST_CASE("undo and reset go back, and the recording gives the same bytes") {
   CHECK(replayed(session) == surface_bytes(session.run()));
 }
 
+TEST_CASE("undo keeps the scene's own changes, and a grab that has not moved is in no recording") {
+  sim::Setup with_change = setup();
+  with_change.scene.changes = {{.time = 0.3, .gravity = geo::Vec3(0, 0, 1)}};
+  Session session(with_change, {});
+  session.advance();
+  session.obey(Set{2e4, {}, 1.0, geo::Vec3(0.5, 0, -2)});
+  cut(session, 1, -0.2, 1.2);
+  session.obey(Set{4e4, {}, 1.0, geo::Vec3(0.5, 0, -2)});
+  session.undo();
+  CHECK(session.recording().changes.size() == 2);
+  CHECK(session.run().scene().material.young == 2e4);
+  for (int i = 0; i < 20; ++i) session.advance();
+  CHECK(session.run().scene().gravity == geo::Vec3(0, 0, 1));
+  CHECK(replayed(session) == surface_bytes(session.run()));
+  shown(session);
+  session.obey(1, Grab{9, 3, Phase::begin, {5, {0.4, 0.3, 0.3}}, {0.5, 0.5, 1.5}});
+  CHECK(session.recording().pulls.empty());
+  CHECK(replayed(session) == surface_bytes(session.run()));
+}
+
 TEST_CASE("requests that cannot be obeyed are refused, and hands of a page that went are let go") {
   Session session(setup(), {});
   CHECK_THROWS_AS(session.obey(1, Grab{1, 1, Phase::begin, {1u << 30, {1, 0, 0}}, {0, 0, 0}}), BadMessage);

@@ -196,6 +196,45 @@ TEST_CASE("values change at their time", "[hands]") {
   CHECK_THROWS_AS(run.extend_blade(0, 1, {}), InputError);
 }
 
+TEST_CASE("a change of a run goes before the scene's later ones", "[hands]") {
+  Scene scene = cube_scene();
+  scene.material.damping = 0;
+  scene.changes = {{.time = 0.25, .gravity = Vec3(0, 0, 2)}};
+  const TriangleMesh cube = make_block({1, 1, 1}, 0.25);
+  Simulation run(scene, cube);
+  for (int i = 0; i < 2; ++i) run.advance_frame();
+  run.change({.gravity = Vec3(0, 0, -4)});
+  for (int i = 0; i < 3; ++i) run.advance_frame();
+  CHECK(run.solid().momentum(run.state().motion).z() == Approx(-(2 * 0.1 + 4 * 0.15) * mass_of(run)));
+  for (int i = 0; i < 5; ++i) run.advance_frame();
+  CHECK(run.solid().momentum(run.state().motion).z() == Approx((2 * 0.25 - 2 * 0.1 - 4 * 0.15) * mass_of(run)));
+  std::ostringstream text;
+  write_scene(text, recording_of(scene, run), "");
+  Simulation replay(parse_scene(text.str(), "recorded.toml"), cube);
+  for (int i = 0; i < 10; ++i) replay.advance_frame();
+  CHECK(bytes(replay) == bytes(run));
+}
+
+TEST_CASE("a grip ends once, and blades and pulls with one key do not exist", "[hands]") {
+  const Scene scene = cube_scene();
+  const TriangleMesh cube = make_block({1, 1, 1}, 0.25);
+  Simulation run(scene, cube), other(scene, cube);
+  const std::size_t grip = run.add_grip({.lo = {-1, -1, 0.6}, .hi = {2, 2, 2}, .motion = {}});
+  run.end_grip(grip);
+  Blade wedge{.name = "b", .points = {{0, -1, 0}, {0, 2, 0}}, .motion = {}};
+  wedge.back = {0, 0, 0.5}, wedge.thickness = 0.3;
+  run.extend_blade(run.add_blade(wedge), 0, at({0.5, 0, 0.5}, 0));
+  run.extend_pull(run.add_pull({.point = {0.5, 0.5, 0.98}, .motion = {}}), 0, {0.5, 0.5, 3});
+  for (int i = 0; i < 3; ++i) run.advance_frame(), other.advance_frame();
+  run.end_grip(grip);
+  CHECK(run.scene().grips[grip].until == 0);
+  CHECK(run.state().motion.displacement == other.state().motion.displacement);
+  const Scene recording = recording_of(scene, run);
+  CHECK(recording.blades.empty());
+  CHECK(recording.pulls.empty());
+  CHECK(recording.grips.size() == 1);
+}
+
 TEST_CASE("what hands did, given as a scene, gives the same run to the bit", "[hands]") {
   for (const bool implicit : {true, false}) {
     const Handled live = handled(implicit);

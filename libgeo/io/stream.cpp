@@ -143,6 +143,7 @@ std::string read_all(const std::string& path) {
 
 void require_writable(const std::string& path) {
   if (path == "-") return;
+  if (path.empty()) throw OutputError("the name of an output file is empty; give one");
   struct stat info {};
   const bool there = ::stat(path.c_str(), &info) == 0;
   if (there && S_ISDIR(info.st_mode)) throw OutputError(path + ": is a folder; give a file name");

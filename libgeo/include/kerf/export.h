@@ -42,11 +42,11 @@ void write_json(std::ostream& out, const KerfFile& file);
 
 /// Names and physical constants of pieces in written files.
 struct ChunkLabels {
-  std::string kind = "file";         ///< key of the names: "file" or "node"
-  std::vector<std::string> names;    ///< per piece
-  double strength = 1;               ///< force per unit of area that a bond withstands
-  std::vector<ClusterLevel> levels;  ///< clusters of the pieces, see make_hierarchy(); may be empty
-  double density = 1000;             ///< mass per unit of volume, where rigid bodies are written
+  std::string kind = "file";              ///< key of the names: "file" or "node"
+  std::vector<std::string> names;         ///< per piece
+  double strength = 1;                    ///< force per unit of area that a bond withstands
+  std::vector<ClusterLevel> levels = {};  ///< clusters of the pieces, see make_hierarchy(); may be empty
+  double density = 1000;                  ///< mass per unit of volume, where rigid bodies are written
 };
 
 /// Name of a piece in written files: piece_000, piece_001 …

@@ -96,7 +96,7 @@ struct SceneBody {
 /// A box whose nodes are held, and moved rigidly.
 struct Grip {
   Vec3 lo, hi;           ///< corners of the box, material coordinates
-  Motion motion;         ///< of the box's centre, relative to its initial place; no keys: at rest
+  Motion motion = {};    ///< of the box's centre, relative to its initial place; no keys: at rest
   bool release = false;  ///< nodes become free after the last key
   double from = -std::numeric_limits<double>::infinity();  ///< s: the grip exists after this time
   double until = std::numeric_limits<double>::infinity();  ///< s: and up to this time
@@ -109,21 +109,21 @@ struct Grip {
 /// A spring between a point of the material and a point that moves, as a hand holds a body. Without
 /// damping of its own.
 struct Pull {
-  Vec3 point = Vec3::Zero();          ///< where the spring holds the body, material coordinates
-  std::optional<std::uint32_t> node;  ///< one that sees the point: its neighbourhood is held; none: the nearest
-  Motion motion;                      ///< of the other end, world; the spring exists from the first to the last key
-  double stiffness = 100;             ///< force over stretch, N/m
+  Vec3 point = Vec3::Zero();               ///< where the spring holds the body, material coordinates
+  std::optional<std::uint32_t> node = {};  ///< one that sees the point: its neighbourhood is held; none: the nearest
+  Motion motion = {};      ///< of the other end, world; the spring exists from the first to the last key
+  double stiffness = 100;  ///< force over stretch, N/m
 };
 
 /// Values of a scene that change at a time. Those that are not given stay.
 struct SceneChange {
-  double time = 0;                 ///< s: from the first time step on that begins then or later
-  std::optional<double> young;     ///< of the scene's material, Pa; bodies of their own material keep their ratio to it
-  std::optional<double> damping;   ///< of all materials, 1/s
-  std::optional<Vec3> gravity;     ///< model units per s²
-  std::optional<double> friction;  ///< of ground, obstacles and contact: Coulomb's coefficient
-  std::optional<double> accuracy;  ///< as Scene::accuracy
-  std::optional<double> dt;        ///< largest time step, s, from the next frame on
+  double time = 0;                      ///< s: from the first time step on that begins then or later
+  std::optional<double> young = {};     ///< Pa, of the scene's material; other materials keep their ratio to it
+  std::optional<double> damping = {};   ///< of all materials, 1/s
+  std::optional<Vec3> gravity = {};     ///< model units per s²
+  std::optional<double> friction = {};  ///< of ground, obstacles and contact: Coulomb's coefficient
+  std::optional<double> accuracy = {};  ///< as Scene::accuracy
+  std::optional<double> dt = {};        ///< largest time step, s, from the next frame on
 };
 
 /// A rigid cutting edge, a polyline, with an optional wedge behind it.
@@ -131,7 +131,7 @@ struct Blade {
   std::string name;
   std::vector<Vec3> points;  ///< of the edge, in the blade's coordinates
   bool closed = false;
-  Motion motion;             ///< at least two keys; the blade exists from the first to the last
+  Motion motion = {};        ///< at least two keys; the blade exists from the first to the last
   Vec3 back = Vec3::Zero();  ///< vector from the edge to the back of the blade, in its coordinates
   double thickness = 0;      ///< of the wedge at the back, model units; 0: no wedge
   double stiffness = 1e4;    ///< penalty of the wedge: acceleration per depth, 1/s²

@@ -1,5 +1,5 @@
 // The preconditioner of conjugate gradients, additive on two levels: overlapping Schwarz subdomains
-// of some six nodes, and a coarse space in which aggregates of a hundred nodes move as rigid bodies.
+// of six or so nodes, and a coarse space in which aggregates of a hundred nodes move rigidly.
 #pragma once
 
 #include <optional>

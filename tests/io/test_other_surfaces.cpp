@@ -171,8 +171,11 @@ TEST_CASE("code in a child process may crash, loop, eat memory and throw") {
   };
   CHECK_THROWS_AS(in_child(eat, {256 << 20, 30}), ChildFailure);
   const auto loop = [](auto& out) {
-    for (volatile int i = 0;; i = i + 1)
-      if (i < 0) out << i;
+    for (volatile unsigned i = 0;;) {
+      const unsigned next = i + 1;
+      i = next;
+      if (next == 0) out << next;
+    }
   };
   CHECK_THROWS_WITH(in_child(loop, {1 << 30, 1}), Catch::Contains("longer than"));
 }

@@ -92,7 +92,8 @@ TEST_CASE("dotted keys set values in tables and lists", "[text]") {
   CHECK(root["blade"][0]["thickness"].value<double>() == 0.25);
   CHECK(root["body"]["mesh"].value<std::string>() == std::string("bear.off"));
   CHECK_THROWS_AS(override_key(root, "blade.7.thickness", "1"), InputError);
-  CHECK(unfit({{0, {}, {0, 0, 1}, 0}, {1, {}, {0, 0, 1}, 0}}).empty());
-  CHECK_FALSE(unfit({{1, {}, {0, 0, 1}, 0}, {0, {}, {0, 0, 1}, 0}}).empty());  // not ascending
-  CHECK_FALSE(unfit({{0, {}, {0, 0, 0}, 0}}).empty());                         // no axis
+  const Motion::Key first, second{.time = 1}, without_axis{.axis = Vec3::Zero()};
+  CHECK(unfit({first, second}).empty());
+  CHECK_FALSE(unfit({second, first}).empty());  // not ascending
+  CHECK_FALSE(unfit({without_axis}).empty());
 }

@@ -1,5 +1,4 @@
 // kerf-sim: runs a scene, and writes its frames and checkpoints.
-#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <functional>

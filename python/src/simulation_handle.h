@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
+#include "arrays.h"
 #include "simulation.h"
 
 namespace kerf_python {
@@ -35,6 +37,12 @@ const auto& objects_of(const geo::Scene& scene) {
 template <Kind kind>
 const auto& scene_object(const Handle<kind>& handle) {
   return objects_of<kind>(handle.simulation->run().scene())[handle.index];
+}
+
+/// The force on an object in the last frame, (3,) float64; zero on one that was added since.
+/// `forces`: on all objects of its kind.
+inline py::array last_force(const std::vector<geo::Vec3>& forces, std::size_t index) {
+  return point(index < forces.size() ? forces[index] : geo::Vec3(geo::Vec3::Zero()));
 }
 
 /// Throws geo::InputError unless the last key of a motion is at the present time: keys after a

@@ -150,8 +150,7 @@ void add_handles(py::module_& module, Class& simulation) {
           "force",
           [](const Handle<Kind::blade>& h) {
             const Reading reading(h.simulation->busy);
-            const auto& forces = h.simulation->last.blade_force;
-            return point(h.index < forces.size() ? forces[h.index] : geo::Vec3(geo::Vec3::Zero()));
+            return last_force(h.simulation->last.blade_force, h.index);
           },
           "Mean force of the material on it in the last frame, (3,) float64, N.");
   bind_handle<Kind::grip>(module, "GripHandle", "A grip of a run; see Simulation.grip().", move_other_doc)

@@ -132,8 +132,7 @@ void bind_pull_handle(py::module_& module) {
           "force",
           [](const Pull& handle) {
             const Reading reading(handle.simulation->busy);
-            const auto& forces = handle.simulation->last.pull_force;
-            return point(handle.index < forces.size() ? forces[handle.index] : geo::Vec3(geo::Vec3::Zero()));
+            return last_force(handle.simulation->last.pull_force, handle.index);
           },
           "Mean force of the material on it in the last frame, (3,) float64, N.")
       .def("extend", &extend, py::arg("to"),

@@ -201,7 +201,7 @@ void Session::set_effort(const Effort& effort) {
 }
 
 void Session::change_run(geo::SceneChange change) {
-  change.time = run_.state().frame * (1 / setup_.scene.frame_rate);
+  change.time = run_.state().time;
   run_.change(change);
   changes_.push_back(change);
 }
@@ -225,7 +225,7 @@ void Session::save() {
 }
 
 void Session::restore(Saved saved) {
-  const double time = saved.state.frame * (1 / setup_.scene.frame_rate);
+  const double time = saved.state.time;
   geo::Scene scene = setup_.scene;
   const geo::Scene& now = run_.scene();
   scene.blades = now.blades, scene.grips = now.grips, scene.pulls = now.pulls;

@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -37,6 +39,19 @@ void clear_bar() {
   if (bar_shown.exchange(false)) std::fputs("\r\033[K", stderr);
 }
 
+// Waits for one of the signals, `seconds` at most. Programs that are stopped and continued, or
+// traced, go on waiting: the system ends their wait with EINTR.
+void wait_for(const sigset_t& signals, double seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(std::min(seconds, 1e9));
+  for (bool again = true; again;) {
+    const std::chrono::duration<double> left = std::max(end - std::chrono::steady_clock::now(), {});
+    timespec wait{};
+    wait.tv_sec = static_cast<time_t>(left.count());
+    wait.tv_nsec = static_cast<long>((left.count() - double(wait.tv_sec)) * 1e9);
+    again = sigtimedwait(&signals, nullptr, &wait) < 0 && errno == EINTR;
+  }
+}
+
 // Starts a thread that waits for Ctrl-C. It requests the work to stop; where that takes longer than
 // `patience`, or a second Ctrl-C comes, it removes incomplete outputs and ends the program.
 void watch_signals(const std::string& name, double patience) {
@@ -49,10 +64,7 @@ void watch_signals(const std::string& name, double patience) {
     int signal = 0;
     sigwait(&signals, &signal);
     interrupted = true;
-    timespec wait{};
-    wait.tv_sec = static_cast<time_t>(std::min(patience, 1e9));
-    wait.tv_nsec = static_cast<long>((std::min(patience, 1e9) - double(wait.tv_sec)) * 1e9);
-    sigtimedwait(&signals, nullptr, &wait);
+    wait_for(signals, patience);
     geo::discard_temporary_outputs();
     clear_bar();
     const std::string line = name + ": interrupted\n";

@@ -2,7 +2,6 @@
 // is an error.
 #pragma once
 
-#include <toml++/toml.h>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "io/shown.h"
+#include "io/toml.h"
 #include "kerf/error.h"
 #include "kerf/vec.h"
 

@@ -60,6 +60,14 @@ TEST_CASE("what a file says is shown in part and without control characters") {
   CHECK(one_line(refusal([] { parse_scene("\"a\\n" + std::string(5000, 'x') + "\" = 1\n", "f"); })));
 }
 
+TEST_CASE("letters of all scripts are refused beside a value of a scene, and kept in its strings") {
+  for (const std::string letter : {"\u00a1", "\u00b5", "\u00e9", "\u0439", "\u0499", "\u2c00", "\u3042"}) {
+    CHECK_THAT(refusal([&] { parse_scene("seed = 3" + letter + "\n", "f"); }), Catch::Contains("f:1:"));
+    const Scene scene = parse_scene("[body]\nmesh = \"\"\"a\\\n " + letter + "\"\"\"\n", "f");
+    CHECK(scene.bodies[0].mesh == "a" + letter);
+  }
+}
+
 TEST_CASE("numbers that no crack, site or point has are refused") {
   const auto sides = [](auto change) {
     TriangleMesh mesh = cut_block().complex.two_sided();

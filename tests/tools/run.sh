@@ -489,6 +489,15 @@ stops)
     [ $status = 0 ] && rm -f x.kerf x.pcd
     [ "$before" = "$(ls -A)" ] || fail "$line, stopped, leaves something behind: $(ls -A)"
   done
+  # Stopped and continued while it ends, as by Ctrl-Z and fg: it goes on ending as it should.
+  for i in 1 2 3 4 5 6 7 8; do
+    kerf-live block.ply --no-browser --port 0 >address.txt 2>said.txt &
+    pid=$!
+    for wait in $(seq 1000); do [ -s address.txt ] && break || sleep 0.01; done
+    kill -INT $pid && sleep 0.002
+    kill -STOP $pid 2>/dev/null && kill -CONT $pid
+    wait $pid && rm address.txt || fail "kerf-live, stopped and continued, does not end: $(cat said.txt)"
+  done
   # A bar where it is asked for, gone before anything else is said.
   for line in "kerf-graph --surface block.ply nodes.pcd -o y.kerf" "kerf-update ok.kerf --surface cut.ply -o y.kerf"; do
     kerf-sample -q block.ply --spacing 6% -o nodes.pcd && $line -v --progress always 2>bar.txt || fail "$line: $(cat bar.txt)"

@@ -45,6 +45,7 @@ class Loop {
         inbox_.wait_until(soon);
       bool changed = false;
       for (Request& request : inbox_.take()) changed |= take(std::move(request));
+      release();
       if (!moves || waits_) {  // a reset may be among the requests
         pacer_.restart();
         if (changed) publish();
@@ -67,9 +68,13 @@ class Loop {
     if (session_.end_late_strokes(std::chrono::duration<double>(end - begin).count(), latest_end) > 0)
       say("frames take too long: a stroke ends where its edge is");
     steps_ = std::max(0, steps_ - 1);
-    constexpr std::chrono::seconds release_interval(10);
-    if (end - released_ > release_interval) release_free_memory(), released_ = end;
     if (const Effort effort = pacer_.effort(); effort != effort_) session_.set_effort(effort), effort_ = effort;
+  }
+
+  // Gives freed memory back to the system from time to time.
+  void release() {
+    constexpr std::chrono::seconds interval(10);
+    if (const auto now = Clock::now(); now - released_ > interval) release_free_memory(), released_ = now;
   }
 
   bool is_deserted() const {

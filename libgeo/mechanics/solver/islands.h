@@ -41,7 +41,7 @@ class Islands {
   }
   /// The islands that a block's points belong to, ascending; empty for a block without nodes.
   std::span<const std::uint32_t> of_block(std::size_t block) const {
-    return {&block_island_[block_first_[block]], block_first_[block + 1] - block_first_[block]};
+    return {block_island_.data() + block_first_[block], block_first_[block + 1] - block_first_[block]};
   }
   /// Offset of a block's first island in the concatenation of of_block(); its length for block =
   /// number of blocks.

@@ -1,5 +1,5 @@
 """The add-on in Blender with a window, driven by events as a user's: progress, Esc, undo; tests/blender/run.sh runs it.
-KERF_SCREENSHOT: a file for a picture of the panel."""
+KERF_BACKEND: AUTO, TOOLS or MODULE. KERF_SCREENSHOT: a file for a picture of the panel."""
 
 import os
 import sys
@@ -89,6 +89,7 @@ def until_idle(seconds):
 
 def steps():
     scenes.empty_scene()
+    bpy.context.preferences.addons["kerf_fracture"].preferences.backend = os.environ["KERF_BACKEND"]
     yield
     watch()
     ball, box = scenes.ball(subdivisions=5), scenes.box()

@@ -68,16 +68,17 @@ void ElasticPotential::evaluate(const ActiveIslands& active, const std::vector<V
       const std::size_t b = blocks[k];
       const PointHistory history{relaxation_.empty() ? nullptr : &relaxation_[b],
                                  start_gradient_.empty() ? nullptr : &start_gradient_[b]};
-      const auto& point_energy = elastic.evaluate(b, u, history, response ? &response->deformation[b] : nullptr,
-                                                  response ? &block_forces_[4 * points.scatter_offset(b)] : nullptr);
-      double* const sums = &block_energy_[islands.block_first(b)];
+      const auto& point_energy =
+          elastic.evaluate(b, u, history, response ? &response->deformation[b] : nullptr,
+                           response ? block_forces_.data() + 4 * points.scatter_offset(b) : nullptr);
+      double* const sums = block_energy_.data() + islands.block_first(b);
       std::fill_n(sums, islands.of_block(b).size(), 0.0);
       for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i)
         sums[islands.slot(b, points.blocks[b], i)] += point_energy[i];
     }
   });
   for (const auto b : blocks) {
-    const double* sum = &block_energy_[islands.block_first(b)];
+    const double* sum = block_energy_.data() + islands.block_first(b);
     for (const auto p : islands.of_block(b)) island_energy[p] += *sum++;
   }
   if (response)
@@ -152,7 +153,7 @@ void ElasticPotential::multiply(const ActiveIslands& active, const std::vector<V
         const Vec3 difference = p[block.nodes[j]] - base;
         for (std::size_t c = 0; c < 3; ++c) values[4 * j + c] = float(difference[static_cast<Eigen::Index>(c)]);
       }
-      float* const out = &block_products_[4 * points.scatter_offset(b)];
+      float* const out = block_products_.data() + 4 * points.scatter_offset(b);
       std::fill(out, out + 4 * block.nodes.size(), 0.0f);
       multiply_stiffness(block, stiffness_.modes[b], values.data(), out);
     }

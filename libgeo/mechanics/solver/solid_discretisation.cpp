@@ -95,7 +95,7 @@ double SolidDiscretisation::elastic_energy(const std::vector<Vec3>& u, std::vect
     ElasticBlock elastic(scratch, strain, materials);
     for (std::size_t b = begin; b < end; ++b) {
       const auto& of_point = elastic.evaluate(b, u, {relaxation.empty() ? nullptr : &relaxation[b], nullptr}, nullptr,
-                                              force ? &block_sums[4 * points.scatter_offset(b)] : nullptr);
+                                              force ? block_sums.data() + 4 * points.scatter_offset(b) : nullptr);
       energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);
     }
   });

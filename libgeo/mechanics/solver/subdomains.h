@@ -49,14 +49,14 @@ class Subdomains {
   std::size_t count() const { return first_.size() - 1; }
   /// The nodes of a subdomain, ascending.
   std::span<const std::uint32_t> nodes(std::size_t subdomain) const {
-    return {&node_[first_[subdomain]], first_[subdomain + 1] - first_[subdomain]};
+    return {node_.data() + first_[subdomain], first_[subdomain + 1] - first_[subdomain]};
   }
   /// Offset of a subdomain's first node in the concatenation of nodes(); its length for subdomain =
   /// count().
   std::size_t first(std::size_t subdomain) const { return first_[subdomain]; }
   /// The subdomains of a node, ascending.
   std::span<const Incidence> subdomains_of(std::size_t node) const {
-    return {&incidence_[begin_[node]], begin_[node + 1] - begin_[node]};
+    return {incidence_.data() + begin_[node], begin_[node + 1] - begin_[node]};
   }
 
   /// For slots a ≥ b of a subdomain, twelve numbers at 12 (a (a + 1) / 2 + b): the rows of

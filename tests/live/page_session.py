@@ -43,8 +43,9 @@ class Session:
     # At its begin, and paused: steps are made one by one, the same on any machine.
     def begin(self):
         self.pause()
+        hand.step()  # time 0 then tells that it has begun anew
         hand.key("r")
-        hand.wait("live.time < 0.1 && live.stats.paused")
+        hand.wait("live.time === 0 && live.stats.paused")
 
     # Saves, and compares with what kerf-sim makes of the recorded scene.
     def done(self):

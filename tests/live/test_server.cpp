@@ -269,6 +269,42 @@ TEST_CASE("a saved file is asked of the simulation, and comes with a harmless na
   simulation.join();
 }
 
+// The request of a file that a page asks for, which has not been answered.
+Request asked_file(Served& s, tcp::socket& page) {
+  page.connect({net::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(s.port())});
+  beast::http::request<beast::http::empty_body> request(beast::http::verb::get, "/" + token + "/save?as=ply", 11);
+  request.set(beast::http::field::host, s.host());
+  beast::http::write(page, request);
+  return std::move(wait_for<Save>(s.inbox, 1).at(0));
+}
+
+// Whether the other end closes the connection within 20 seconds: then nothing more can be written.
+bool is_closed_by_other_end(tcp::socket& page) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  for (beast::error_code error; std::chrono::steady_clock::now() < end;) {
+    net::write(page, net::buffer("x", 1), error);
+    if (error) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+TEST_CASE("the request of a file keeps no connection open and may outlive the server") {
+  net::io_context io;
+  tcp::socket page(io);
+  std::optional<Served> s(std::in_place);
+  const Request request = asked_file(*s, page);
+  SECTION("answered") {
+    std::get<Save>(request.what).answer("bytes", "");
+    beast::flat_buffer buffer;
+    beast::http::response<beast::http::string_body> response;
+    beast::http::read(page, buffer, response);
+    CHECK(response.body() == "bytes");
+  }
+  SECTION("never answered") { s.reset(); }
+  CHECK(is_closed_by_other_end(page));
+}
+
 TEST_CASE("a move replaces the move before it, and nothing is put behind a full queue") {
   Inbox inbox;
   const auto stroke = [](std::uint64_t id, Phase phase, double x) {

@@ -17,7 +17,8 @@ namespace live {
 /// A page came, or went.
 struct Join {};
 struct Leave {};
-/// A file is wanted. `answer` may be called on any thread, once: with its bytes, or with a reason.
+/// A file is wanted. `answer` may be called on any thread, once, while the server lives: with its
+/// bytes, or with a reason.
 struct Save {
   std::string format;  ///< kerf, ply, glb or toml
   std::function<void(std::string bytes, std::string error)> answer;

@@ -89,6 +89,9 @@ struct Server::Impl {
   net::io_context io{1};
   tcp::acceptor acceptor{io};
   net::steady_timer retry{io};
+  // Visits that wait for a file, by number. The network thread alone uses them.
+  std::map<std::uint64_t, std::shared_ptr<Visit>> waiting;
+  std::uint64_t last_file = 0;
   std::thread thread;
 };
 
@@ -266,14 +269,23 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
     if (format != "kerf" && format != "ply" && format != "glb" && format != "toml")
       return send(http::status::not_found, "as=kerf, ply, glb or toml");
     socket_.expires_never();
-    Save save{format, [self = shared_from_this(), format](std::string bytes, std::string error) {
-                net::post(self->hub_.io, [self, format, bytes = std::move(bytes), error = std::move(error)]() mutable {
-                  if (!error.empty()) return self->send(http::status::internal_server_error, error);
-                  self->file_ = plain_name(self->hub_.options.name) + "." + format;
-                  self->send(http::status::ok, std::move(bytes), "application/octet-stream");
+    const auto number = ++hub_.last_file;
+    hub_.waiting[number] = shared_from_this();
+    // The simulation thread drops the answer, perhaps after the server has gone. So it owns no visit.
+    Save save{format, [hub = &hub_, number, format](std::string bytes, std::string error) {
+                net::post(hub->io, [=, bytes = std::move(bytes), error = std::move(error)]() mutable {
+                  const auto visit = hub->waiting.extract(number);
+                  if (visit) visit.mapped()->send_file(format, std::move(bytes), error);
                 });
               }};
-    if (!hub_.inbox.put({0, std::move(save)})) send(http::status::service_unavailable, "the simulation is busy");
+    if (hub_.inbox.put({0, std::move(save)})) return;
+    hub_.waiting.erase(number);
+    send(http::status::service_unavailable, "the simulation is busy");
+  }
+  void send_file(const std::string& format, std::string bytes, const std::string& error) {
+    if (!error.empty()) return send(http::status::internal_server_error, error);
+    file_ = plain_name(hub_.options.name) + "." + format;
+    send(http::status::ok, std::move(bytes), "application/octet-stream");
   }
   void send(http::status status, std::string body, const std::string& type = "text/plain; charset=utf-8") {
     response_ = HttpResponse(status, 11);

@@ -271,7 +271,7 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
     socket_.expires_never();
     const auto number = ++hub_.last_file;
     hub_.waiting[number] = shared_from_this();
-    // The simulation thread drops the answer, perhaps after the server has gone. So it owns no visit.
+    // The simulation thread drops the answer, perhaps after the server has gone: it owns no visit.
     Save save{format, [hub = &hub_, number, format](std::string bytes, std::string error) {
                 net::post(hub->io, [=, bytes = std::move(bytes), error = std::move(error)]() mutable {
                   const auto visit = hub->waiting.extract(number);

@@ -29,10 +29,18 @@ NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId 
 /// there is none. `accept` limits the search to the piece of the shell.
 NodeId carrier_of_unseen_shell(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept);
 
+/// Nodes, ascending, and the closest surface vertex of each, as closest_vertex() finds it.
+using ClosestVertices = std::vector<std::pair<NodeId, SurfaceVertexId>>;
+
+/// Those of all nodes whose closest vertex may have changed in a step, nodes from `first_new` on
+/// included. Needs no graph. `moved`: old nodes with another position or support radius, ascending.
+ClosestVertices closest_after(const Body& body, const CrackDelta& delta, NodeId first_new,
+                              const std::vector<NodeId>& moved);
+
 /// Updates body.binding after a step: equal to build_binding(), bit for bit, at a cost that follows
-/// the change. `moved`: old nodes with another position or support radius, ascending. Returns the
-/// surface vertices with another carrying node, ascending.
+/// the change. `closest`: of closest_after(); nodes may have been added since. Returns the surface
+/// vertices with another carrying node, ascending.
 std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
-                                    const std::vector<NodeId>& moved);
+                                    const std::vector<NodeId>& moved, ClosestVertices closest);
 
 }  // namespace geo

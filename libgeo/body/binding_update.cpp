@@ -32,7 +32,8 @@ class Rebinding {
     b_.closest.resize(body.nodes.size());
   }
 
-  void update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved);
+  void update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
+                      ClosestVertices closest);
   void update_unseen_masters(NodeId first_new, const std::vector<NodeId>& moved);
   void update_masters();
   void update_trees_at_changed_edges(const CrackDelta& delta);
@@ -84,27 +85,33 @@ class Rebinding {
   std::unordered_map<SurfaceVertexId, NodeId> node_before_, carrier_before_;
 };
 
+}  // namespace
+
 // A node's closest vertex v depends on faces within 1.05 |v − x|, since visible_fan() tests points
 // up to a twentieth farther. 1.06 covers rounding, too. Without a closest vertex, the node depends
 // on all faces within 1.06 support radii.
-void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved) {
-  const auto& x = body_.nodes.position;
-  const double reach = longest_reach(body_);
+ClosestVertices closest_after(const Body& body, const CrackDelta& delta, NodeId first_new,
+                              const std::vector<NodeId>& moved) {
+  const Complex& k = body.surface;
+  const auto& x = body.nodes.position;
+  const double reach = longest_reach(body);
   std::vector<std::array<Vec3, 3>> faces;
-  for (const FaceId f : delta.new_faces) faces.push_back(k_.corners(f));
+  for (const FaceId f : delta.new_faces) faces.push_back(k.corners(f));
   const TriangleBvh changed(faces);
   std::vector<std::uint32_t> stale;
-  body_.cache->grid.walk(
+  body.cache->grid.walk(
       [&](int, const Vec3& middle, double half) {
         return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).triangle != none;
       },
-      [&](int, std::uint32_t i) { stale.push_back(i); });
+      [&](int, std::uint32_t i) {
+        if (i < first_new.value) stale.push_back(i);
+      });
   parallel_for(stale.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const auto i = stale[s];
-      const auto closest = b_.closest[i];
+      const auto closest = body.binding.closest[i];
       const double far =
-          closest.valid() && k_.alive(closest) ? (k_.point(k_.site(closest)) - x[i]).norm() : body_.nodes.radius[i];
+          closest.valid() && k.alive(closest) ? (k.point(k.site(closest)) - x[i]).norm() : body.nodes.radius[i];
       if (changed.closest(x[i], 1.06 * far).triangle == none) stale[s] = none;
     }
   });
@@ -113,18 +120,29 @@ void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const 
   for (const NodeId i : moved) stale.push_back(i.value);
   std::sort(stale.begin(), stale.end());
   stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
-  std::vector<SurfaceVertexId> now(stale.size());
+  ClosestVertices result(stale.size());
   parallel_for(stale.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) now[s] = closest_vertex(k_, x[stale[s]], body_.nodes.radius[stale[s]]);
+    for (std::size_t s = begin; s < end; ++s)
+      result[s] = {NodeId(stale[s]), closest_vertex(k, x[stale[s]], body.nodes.radius[stale[s]])};
   });
-  for (std::size_t s = 0; s < stale.size(); ++s) {
-    auto& closest = b_.closest[stale[s]];
-    const bool elsewhere =
-        stale[s] >= first_new.value || std::binary_search(moved.begin(), moved.end(), NodeId(stale[s]));
-    if (closest == now[s] && !elsewhere) continue;
-    for (const auto v : {closest, now[s]})
+  return result;
+}
+
+namespace {
+
+// `closest`: of nodes near the change. Nodes that were added since follow.
+void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
+                               ClosestVertices closest) {
+  const auto known = closest.empty() ? first_new.value : std::max(first_new.value, closest.back().first.value + 1);
+  for (std::uint32_t i = known; i < body_.nodes.size(); ++i)
+    closest.push_back({NodeId(i), closest_vertex(k_, body_.nodes.position[i], body_.nodes.radius[i])});
+  for (const auto& [node, now] : closest) {
+    auto& before = b_.closest[node.index()];
+    const bool elsewhere = node >= first_new || std::binary_search(moved.begin(), moved.end(), node);
+    if (before == now && !elsewhere) continue;
+    for (const auto v : {before, now})
       if (v.valid()) retargeted_.insert(v);
-    closest = now[s];
+    before = now;
   }
   for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
 }
@@ -290,9 +308,9 @@ std::vector<SurfaceVertexId> Rebinding::rebound() {
 }  // namespace
 
 std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
-                                    const std::vector<NodeId>& moved) {
+                                    const std::vector<NodeId>& moved, ClosestVertices closest) {
   Rebinding r(body);
-  r.update_closest(delta, first_new, moved);
+  r.update_closest(delta, first_new, moved, std::move(closest));
   r.update_unseen_masters(first_new, moved);
   r.update_masters();
   r.update_trees_at_changed_edges(delta);

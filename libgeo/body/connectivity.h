@@ -58,12 +58,18 @@ std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double r
 /// other and get an edge at any distance.
 using GraphUpdater = std::function<void(NodeId first_new, std::span<const NodePair> joins)>;
 
+/// The faces and edges of a step, for repair_connectivity().
+struct FreshCut {
+  std::span<const FaceId> faces;    ///< crack faces of the step, ascending
+  std::span<const NodePair> edges;  ///< edges of G that it has cut
+};
+
 /// § 6.4, passages too narrow for the sampling: adds edges, then nodes, until no piece is empty and
 /// all pairs are connected. Works in rounds of decreasing spacing; `update` is called once a round.
-/// Afterwards mismatch.representative has a node of each piece visited. `fresh`: crack faces of
-/// this step, ascending.
+/// Afterwards mismatch.representative has a node of each piece visited. `cut`: tells where a
+/// passage is, so that no nodes are added elsewhere; empty: passages may be anywhere.
 void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
-                         std::span<const FaceId> fresh = {});
+                         const FreshCut& cut = {});
 
 /// The nodes of each detached piece, ascending. A piece that came apart into n parts gives n − 1
 /// lists: the part with most nodes is left out.

@@ -1,6 +1,6 @@
-// repair_connectivity() of body/connectivity.h. Repairs of G (§ 6.4): passages too narrow for the
-// sampling, and pieces without a node. In this order: an edge between components that see each
-// other, new nodes at the passage's walls, nodes along a taut path (docs/decisions/032).
+// repair_connectivity() of body/connectivity.h: narrow passages, pieces without a node (§ 6.4). An
+// edge between components that see each other; else nodes at the passage's walls, or along a taut
+// path, which comes first where a cut has just narrowed the passage (docs/decisions/032).
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -167,9 +167,8 @@ std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<Si
 // mismatch.
 class ConnectivityRepair {
  public:
-  ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
-                     std::span<const FaceId> fresh)
-      : body_(body), mismatch_(mismatch), update_(update), fresh_(fresh) {}
+  ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update, const FreshCut& cut)
+      : body_(body), mismatch_(mismatch), update_(update), cut_(cut) {}
   void run() {
     // Rounds have spacing 0.7 · 0.8^round: the first is denser than the sampling, which missed the
     // passage, and the last (round 11) has 6 % of it. More rounds: finer nodes in passages.
@@ -182,7 +181,7 @@ class ConnectivityRepair {
       // Limited, so that a passage that stays closed costs little.
       insert_nodes_near(
           body_, faces,
-          {.spacing = scale * body_.cache->grid.cell(), .seed = 0x6b657266u, .limit = 100, .fresh = fresh_});
+          {.spacing = scale * body_.cache->grid.cell(), .seed = 0x6b657266u, .limit = 100, .fresh = cut_.faces});
       if (first_new.index() < body_.nodes.size() || !joins_.empty())
         update_(first_new, joins_);
       else if (round >= 1)
@@ -201,8 +200,9 @@ class ConnectivityRepair {
         mismatch_.representative.erase(piece), body_.cache->pieces_without_node.insert(piece);
     }
   }
-  // By an edge where two components see each other; else by sampling the passage (first round:
-  // returns the faces to sample near), else along a taut path (later rounds).
+  // By an edge where two components see each other; else along a taut path, in later rounds or
+  // where it is known where the passage is; else by sampling the passage (first round: returns the
+  // faces to sample near).
   std::vector<FaceId> connect_components(int round, double spacing) {
     Regions components = components_of(body_);
     NearestInPiece nearest(body_);
@@ -216,30 +216,47 @@ class ConnectivityRepair {
       auto component = components.inside(i.value);
       std::sort(component.begin(), component.end());
       if (join_by_visible_edge(body_, nearest, component, joins_)) continue;
+      const auto ends = ends_at_passage(component);
+      if ((round > 0 || !ends.empty()) && join_by_taut_path(nearest, i, component, ends, spacing)) continue;
       if (round == 0)
-        for (const auto n : component) {
+        for (const auto n : ends.empty() ? component : ends) {
           const Vec3& x = body_.nodes.position[n];
-          // Faces within 1.5 spacings of the component: walls of the passage at its nodes.
+          // Faces within 1.5 spacings of these nodes: walls of the passage.
           body_.surface.faces_near(Box3{x, x}.grown(1.5 * body_.nodes.spacing[n]), faces);
         }
-      else
-        join_by_taut_path(nearest, i, component, spacing);
     }
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
   }
+  // The nodes of a component that lost an edge to the rest of its piece in this step: what is left
+  // of the passage is near them. None where no edge was cut, as in a build.
+  std::vector<std::uint32_t> ends_at_passage(const std::vector<std::uint32_t>& component) const {
+    const auto is_inside = [&](NodeId n) { return std::binary_search(component.begin(), component.end(), n.value); };
+    std::vector<std::uint32_t> ends;
+    for (const auto& [a, b] : cut_.edges)
+      if (is_inside(a) != is_inside(b) && piece_of(body_, a) == piece_of(body_, b))
+        ends.push_back((is_inside(a) ? a : b).value);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return ends;
+  }
   // Each pair of nodes is tried once, though later rounds search a little nearer to the surface: a
-  // failed search takes longest, and few succeed at a second try.
-  void join_by_taut_path(NearestInPiece& nearest, NodeId i, const std::vector<std::uint32_t>& component,
-                         double spacing) {
-    for (const NodeId from : {i, NodeId(component.front()), NodeId(component.back())}) {
-      const auto near = nearest.outside(from, 4, component);
+  // failed search takes longest, and few succeed at a second try. `ends`: of ends_at_passage().
+  bool join_by_taut_path(NearestInPiece& nearest, NodeId i, const std::vector<std::uint32_t>& component,
+                         std::span<const std::uint32_t> ends, double spacing) {
+    std::vector<std::uint32_t> starts(ends.begin(),
+                                      ends.begin() + std::ptrdiff_t(std::min<std::size_t>(ends.size(), 3)));
+    starts.insert(starts.end(), {i.value, component.front(), component.back()});
+    for (const auto from : starts) {
+      const auto near = nearest.outside(NodeId(from), 4, component);
       const auto joins = [&](auto to) {
-        return tried_.insert({from, NodeId(to)}).second && insert_nodes_along(body_, from, NodeId(to), spacing, joins_);
+        return tried_.insert({NodeId(from), NodeId(to)}).second &&
+               insert_nodes_along(body_, NodeId(from), NodeId(to), spacing, joins_);
       };
-      if (std::any_of(near.begin(), near.end(), joins)) break;
+      if (std::any_of(near.begin(), near.end(), joins)) return true;
     }
+    return false;
   }
   void find_remaining(NodeId first_new) {
     ConnectivityMismatch left;
@@ -256,7 +273,7 @@ class ConnectivityRepair {
   Body& body_;
   ConnectivityMismatch& mismatch_;
   const GraphUpdater& update_;
-  const std::span<const FaceId> fresh_;
+  const FreshCut cut_;
   std::vector<NodePair> joins_;                // of this round
   std::set<std::pair<NodeId, NodeId>> tried_;  // ends of taut paths
 };
@@ -283,9 +300,8 @@ std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double r
   return point_between_corners(k, sides, piece, wanted);
 }
 
-void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
-                         std::span<const FaceId> fresh) {
-  ConnectivityRepair(body, mismatch, update, fresh).run();
+void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update, const FreshCut& cut) {
+  ConnectivityRepair(body, mismatch, update, cut).run();
 }
 
 }  // namespace geo

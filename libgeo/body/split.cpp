@@ -15,6 +15,7 @@
 #include "body/locate.h"
 #include "body/veto.h"
 #include "graph/update.h"
+#include "kerf/parallel.h"
 
 namespace geo {
 namespace {
@@ -88,15 +89,19 @@ class BodyUpdater {
                                      body_.graph);
       updated_.insert(more.updated_nodes.begin(), more.updated_nodes.end());
     };
-    repair_connectivity(body_, mismatch, update, delta.crack.new_crack_faces);
+    repair_connectivity(body_, mismatch, update, {delta.crack.new_crack_faces, graph_update.cut_edges});
     delta.detached = detached_nodes(body_, pieces, mismatch);
     delta.updated_nodes.assign(updated_.begin(), updated_.end());
     mark_debris(body_, delta.updated_nodes);
   }
+  /// The first part of step 7, which needs no graph.
+  void find_closest_vertices() {
+    closest_ = closest_after(body_, delta.crack, delta.first_new_node, delta.moved_nodes);
+  }
   /// Step 7: masters and slaves of surface vertices (§ 6.5).
   void rebind_vertices() {
     report(progress_, "binding", 0, delta.crack.new_faces.size());
-    delta.rebound_vertices = rebind(body_, delta.crack, delta.first_new_node, delta.moved_nodes);
+    delta.rebound_vertices = rebind(body_, delta.crack, delta.first_new_node, delta.moved_nodes, std::move(closest_));
     delta.donors = body_.cache->donors;
     ++body_.crack_steps;
   }
@@ -116,6 +121,7 @@ class BodyUpdater {
   const Progress& progress_;
   const TrianglesNear near_;
   std::set<NodeId> updated_;  // P_update of all updates
+  ClosestVertices closest_;
   std::size_t first_repair_node_ = 0;
 };
 
@@ -125,7 +131,7 @@ BodyDelta update_after_crack(Body& body, CrackDelta crack, SplitStats* stats, co
   if (updater.delta.crack.empty()) return std::move(updater.delta);
   updater.resample();
   const double resample = seconds_since(clock);
-  updater.update_graph_and_neighbors();
+  parallel_invoke([&] { updater.update_graph_and_neighbors(); }, [&] { updater.find_closest_vertices(); });
   updater.match_graph_to_pieces();
   const double graph = seconds_since(clock);
   updater.rebind_vertices();

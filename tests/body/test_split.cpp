@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/random.h"
 #include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "body/node_insertion.h"
@@ -90,6 +91,39 @@ TEST_CASE("A cut through nodes moves them off", "[body]") {
   const auto delta = split(body, front, {{x, -0.5, 1.5}, {x, 1.5, 1.5}});
   CHECK(!delta.moved_nodes.empty());
   CHECK(check_body(body).first_problem == "");
+}
+
+TEST_CASE("A thin ligament that a cut leaves gets a few nodes, all of them near it", "[body]") {
+  const auto [first, count] = seeds(30);
+  std::size_t repaired = 0;
+  for (int n = 0; n < count; ++n) {
+    const std::uint64_t seed = first + static_cast<std::uint64_t>(n);
+    INFO("seed " << seed);
+    Random random(seed);
+    const double spacing = 0.2;
+    Body body = make_body(make_block({1, 1, 2}, 0.15), spacing);
+    // A cut in two steps, across the block but for a strip along one side.
+    const double z = random.uniform(0.8, 1.2), tilt = random.uniform(-0.1, 0.1), left = random.uniform(0.005, 0.06);
+    const auto edge = [&](double y) {
+      std::vector<Vec3> points;
+      for (int i = 0; i <= 8; ++i) points.push_back({-0.1 + 0.15 * i, y, z + tilt * (-0.1 + 0.15 * i)});
+      return points;
+    };
+    auto front = begin_front(edge(-0.1), false, 1);
+    split(body, front, edge(random.uniform(0.4, 0.7)));
+    SplitStats stats;
+    split(body, front, edge(1 - left), {}, &stats);
+    CHECK(check_body(body).first_problem == "");
+    CHECK(find_pieces(body.surface).count == 1);
+    repaired += stats.repair_nodes > 0;
+    CHECK(stats.repair_nodes <= 12);
+    for (std::size_t i = body.nodes.size() - stats.repair_nodes; i < body.nodes.size(); ++i) {
+      const Vec3& x = body.nodes.position[i];
+      CHECK(x.y() > 1 - left - 2 * spacing);
+      CHECK(std::abs(x.z() - z) < 2 * spacing);
+    }
+  }
+  CHECK(repaired > 0);
 }
 
 TEST_CASE("Following a surface that was cut elsewhere keeps the invariants", "[body]") {

@@ -307,6 +307,17 @@ WideBvh::WideBvh(Corners corners, Order order) {
 void WideBvh::blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
                       std::uint8_t* result) const {
   std::fill_n(result, ends.size(), std::uint8_t(0));
+  add_blocked(corners, order, p, ends, result);
+}
+
+void WideBvh::remove(std::uint32_t place) {
+  for (int axis = 0; axis < 3; ++axis)
+    levels_[0][place / width].lo[axis][place % width] = INFINITY,
+                                               levels_[0][place / width].hi[axis][place % width] = -INFINITY;
+}
+
+void WideBvh::add_blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,
+                          std::uint8_t* result) const {
   if (levels_.empty()) return;
   for (std::size_t first = 0; first < ends.size(); first += packet_size) HWY_DYNAMIC_DISPATCH(blocked_packet)
   (*this, corners, order, p, ends.subspan(first, std::min(packet_size, ends.size() - first)), result + first);

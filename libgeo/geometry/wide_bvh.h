@@ -42,6 +42,11 @@ class WideBvh {
   /// triangle, else 0. Exact. `corners` and `order`: those of the construction.
   void blocked(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order, const Vec3& p,
                std::span<const Vec3> ends, std::uint8_t* result) const;
+  /// The same, but leaves `result` as it is for segments that touch no triangle.
+  void add_blocked(std::span<const std::array<Vec3, 3>> corners, std::span<const std::uint32_t> order, const Vec3& p,
+                   std::span<const Vec3> ends, std::uint8_t* result) const;
+  /// Removes the triangle at a place of the order: it blocks no segment any more.
+  void remove(std::uint32_t place);
 
   /// The origin of box coordinates, in model coordinates.
   const Vec3& middle() const { return middle_; }

@@ -37,7 +37,7 @@ struct Path {
 
 // The first path from x to the node whose both segments touch no face; null: none. The first few
 // paths are tested alone, since one of them is clear in most cases.
-const Path* first_clear(const Vec3& x, const Vec3& node, std::span<const Path> paths, const TriangleBvh& faces) {
+const Path* first_clear(const Vec3& x, const Vec3& node, std::span<const Path> paths, const OccludingFaces& faces) {
   std::vector<Vec3> bends;
   std::vector<const Path*> open;  // their first segments are clear
   std::vector<std::uint8_t> hidden;
@@ -91,7 +91,7 @@ std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const 
 }
 
 std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,
-                                              std::span<const NearFront> fronts, const TriangleBvh& faces) {
+                                              std::span<const NearFront> fronts, const OccludingFaces& faces) {
   const Vec3 offset = x - node;
   const double straight = offset.norm(), longest = longest_path(straight, support);
   std::vector<Path> paths;

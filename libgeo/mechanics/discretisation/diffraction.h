@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/bvh.h"
 #include "kerf/complex.h"
+#include "mechanics/discretisation/occluding_faces.h"
 #include "mechanics/discretisation/shape_functions.h"
 
 namespace geo {
@@ -47,6 +47,6 @@ std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const 
 /// of its segments are clear of faces (exact), so no path crosses a crack that has no front.
 /// `fronts`: those of fronts_near() for a reach of `support` or more.
 std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, double support,
-                                              std::span<const NearFront> fronts, const TriangleBvh& faces);
+                                              std::span<const NearFront> fronts, const OccludingFaces& faces);
 
 }  // namespace geo

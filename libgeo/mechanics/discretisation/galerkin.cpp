@@ -15,7 +15,9 @@
 namespace geo {
 namespace {
 
-constexpr std::size_t max_cells_per_block = 256;  // larger: fewer copies of a node's slots, longer node lists
+// Larger: fewer copies of a node's slots, but longer node lists. A cut computes blocks anew as a
+// whole, and threads share them: small bodies have small ones, so that both are few cells.
+std::size_t cells_per_block(const Body& body) { return body.original_nodes < 1024 ? 64 : 256; }
 constexpr std::size_t none = ~std::size_t(0);
 
 // Faces that were added or removed, and supports of nodes that were added, moved or resized.
@@ -59,27 +61,33 @@ class Changes {
       return true;
     const std::vector<std::uint32_t> near = visibility_.faces_near(p.position, p.influence_radius, local.faces);
     if (near.empty()) return false;
-    std::vector<std::uint32_t> nodes;
-    if (p.occluded || p.quality == MomentQuality::singular) {
-      for (const auto j : nodes_near())
-        if ((body.nodes.position[j] - p.position).norm() < factor * body.nodes.radius[j]) nodes.push_back(j);
-    } else {  // it sees all nodes that support it, and no other support has changed
-      for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
-        nodes.push_back(block.nodes[block.entry_node[q]]);
-    }
     std::vector<Vec3> ends{intended};
-    for (const auto j : nodes) ends.push_back(body.nodes.position[j]);
-    std::vector<std::uint8_t> touched(ends.size(), 0);
-    visibility_.faces().blocks(p.position, ends, touched.data());
-    if (std::find(touched.begin(), touched.end(), 1) != touched.end()) return true;
+    for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
+      ends.push_back(body.nodes.position[block.nodes[block.entry_node[q]]]);
+    if (is_touched(p.position, ends)) return true;
+    // Another point sees all nodes that support it, and no other support has changed.
+    if (!p.occluded && p.quality != MomentQuality::singular) return false;
+    std::vector<std::uint32_t> nodes;
+    ends.clear();
+    for (const auto j : nodes_near())
+      if (const Vec3& x = body.nodes.position[j]; (x - p.position).norm() < factor * body.nodes.radius[j])
+        nodes.push_back(j), ends.push_back(x);
+    if (is_touched(p.position, ends)) return true;
     if (!p.occluded) return false;
     forget_settled(block, point, nodes);
+    const VisibilityChanges::NearBalls balls = visibility_.balls_near(p.position, near);
     return std::any_of(nodes.begin(), nodes.end(), [&](auto j) {
-      return visibility_.meet_bent_paths(p.position, body.nodes.position[j], factor * body.nodes.radius[j], near);
+      return balls.meet_bent_paths(body.nodes.position[j], factor * body.nodes.radius[j]);
     });
   }
 
  private:
+  // Whether a changed face touches a segment from x to one of the ends.
+  bool is_touched(const Vec3& x, std::span<const Vec3> ends) const {
+    std::vector<std::uint8_t> touched(ends.size(), 0);
+    visibility_.faces().blocks(x, ends, touched.data());
+    return std::find(touched.begin(), touched.end(), 1) != touched.end();
+  }
   // Removes the nodes that a point sees straight ahead, and those without a path to it: unseen
   // before, and in another component than the nodes straight ahead. Precondition: no changed face
   // is between the point and nodes straight ahead.
@@ -89,10 +97,11 @@ class Changes {
     std::optional<std::uint32_t> own;
     for (auto q = begin; q < end && !own; ++q)
       if (!block.entry_bent[q]) own = component_[block.nodes[block.entry_node[q]]];
+    auto q = begin;  // entries and nodes are ascending
     std::erase_if(nodes, [&](auto j) {
-      Seen seen = Seen::no;
-      for (auto q = begin; q < end && seen == Seen::no; ++q)
-        if (block.nodes[block.entry_node[q]] == j) seen = block.entry_bent[q] ? Seen::bent : Seen::straight;
+      while (q < end && block.nodes[block.entry_node[q]] < j) ++q;
+      const bool is_entry = q < end && block.nodes[block.entry_node[q]] == j;
+      const Seen seen = !is_entry ? Seen::no : block.entry_bent[q] ? Seen::bent : Seen::straight;
       return seen == Seen::straight || (seen == Seen::no && own && component_[j] != *own);
     });
   }
@@ -233,7 +242,7 @@ struct BlockUpdate {
 }  // namespace
 
 Galerkin::Galerkin(const Body& body, std::span<const std::uint32_t> component, MaterialPoints& points)
-    : cells_(body), block_begin_(cells_.groups(max_cells_per_block)) {
+    : cells_(body), block_begin_(cells_.groups(cells_per_block(body))) {
   const Occluders occluders = all_occluders(body.surface);
   points.blocks.resize(block_begin_.size() - 1);
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -278,7 +287,7 @@ PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::ui
     const auto before = cells_.cells();
     if (cells_.update(body)) {
       old_cell = same_cells(cells_.cells(), before);
-      block_begin_ = cells_.groups(max_cells_per_block);
+      block_begin_ = cells_.groups(cells_per_block(body));
       for (const auto c : old_cell)
         for (std::uint32_t k = 0; k < 4; ++k) result.old_point.push_back(c == ~0u ? c : 4 * c + k);
     }
@@ -300,7 +309,7 @@ PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::ui
       MaterialPoint& point = r.points[r.stale[s]];
       tasks.push_back({&point, &r.shapes[s], source.block, source.point, wants_values(point.position)});
     }
-  compute_supports(body, std::move(tasks), nullptr, &changes.visibility(), component);
+  compute_supports(body, std::move(tasks), nullptr, &changes.visibility(), component, &near_);
   parallel_for(updates.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) points.blocks[b] = updates[b].make_block(cells_of(b), old);
   });

@@ -24,7 +24,7 @@ constexpr double ill_conditioned = 500;  // and so does one with a larger condit
 // of 1 / support radius (docs/decisions/061).
 constexpr double steepest_shape = 4;
 constexpr double without_strain = 1e7;  // times the rounding unit 1e-16: linear fields would be off by 1e-9
-constexpr std::size_t tasks_per_batch = 32;
+constexpr std::size_t least_tasks = 4, most_tasks = 32;  // of a batch; affects speed alone
 // A path to a node that is shorter than its support S admits stays within ½ √(L² − s²) of the box
 // of point and node, with s their distance and L = (S / s)^¼ s. That is at most 0.1624 S, where s =
 // 9/16 S. The rest covers the distance of a path from its front edge.
@@ -139,7 +139,7 @@ struct Batch {
     const Body& body;
     const SupportTask& task;
     double factor;
-    const TriangleBvh& faces;
+    const OccludingFaces& faces;
     const VisibilityChanges* changes;
     const NodeComponents& components;
     std::span<const std::uint32_t> changed;  // faces that lines of sight of the point may touch
@@ -227,10 +227,10 @@ struct Batch {
   static void forget_paths(const Trial& trial, Scratch& scratch) {
     const auto& [body, task, factor, faces, changes, components, changed] = trial;
     if (std::find(scratch.path.begin(), scratch.path.end(), Path::lost) == scratch.path.end()) return;
-    const Vec3& x = task.point->position;
+    const VisibilityChanges::NearBalls balls = changes->balls_near(task.point->position, changed);
     for (std::size_t q = 0; q < scratch.nodes.size(); ++q)
       if (scratch.hidden[q] && scratch.path[q] == Path::lost &&
-          changes->meet_bent_paths(x, scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]], changed))
+          balls.meet_bent_paths(scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]]))
         scratch.path[q] = Path::unknown;
   }
 
@@ -291,6 +291,8 @@ struct Batch {
 
 // Consecutive tasks whose points are closer than `distance` to the first one's.
 std::vector<Batch> batches_of(std::span<const SupportTask> tasks, double distance) {
+  constexpr std::size_t shares = 16;  // so that few tasks keep several threads busy, too
+  const std::size_t tasks_per_batch = std::clamp(tasks.size() / shares, least_tasks, most_tasks);
   std::vector<Batch> batches;
   for (std::size_t begin = 0, end; begin < tasks.size(); begin = end) {
     const Vec3& first = tasks[begin].point->position;
@@ -304,7 +306,7 @@ std::vector<Batch> batches_of(std::span<const SupportTask> tasks, double distanc
 
 double volume(const Box3& box) { return (box.hi - box.lo).prod(); }
 
-Occluders near_occluders(const Complex& surface, std::span<const Batch> batches) {
+std::vector<FaceId> near_faces(const Complex& surface, std::span<const Batch> batches) {
   // Boxes are merged while their union is no larger than their sum: overlapping queries become one.
   std::vector<Box3> boxes;
   for (const Batch& batch : batches) {
@@ -325,7 +327,7 @@ Occluders near_occluders(const Complex& surface, std::span<const Batch> batches)
   for (const auto& of_box : near)
     for (const FaceId f : of_box)
       if (!std::exchange(found[f.index()], 1)) ids.push_back(f);
-  return {surface, ids};
+  return ids;
 }
 
 }  // namespace
@@ -353,30 +355,36 @@ std::vector<std::uint32_t> VisibilityChanges::faces_near(const Vec3& x, double r
   return near;
 }
 
-// All such paths fill an ellipsoid.
-bool VisibilityChanges::meet_bent_paths(const Vec3& x, const Vec3& node, double support,
-                                        std::span<const std::uint32_t> faces) const {
-  const double longest = longest_path((node - x).norm(), support);
-  return std::any_of(faces.begin(), faces.end(), [&](auto f) {
+VisibilityChanges::NearBalls VisibilityChanges::balls_near(const Vec3& x, std::span<const std::uint32_t> faces) const {
+  NearBalls near;
+  near.x = x;
+  for (const auto f : faces) {
     const auto& [middle, radius] = balls_[f];
-    return (middle - x).norm() + (middle - node).norm() < longest + 2 * (radius + bend_margin * support);
+    near.balls.push_back({middle, 2 * radius, (middle - x).norm()});
+  }
+  return near;
+}
+
+// All such paths fill an ellipsoid.
+bool VisibilityChanges::NearBalls::meet_bent_paths(const Vec3& node, double support) const {
+  const double longest = longest_path((node - x).norm(), support) + 2 * bend_margin * support;
+  return std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) {
+    const double rest = longest + ball.twice_radius - ball.distance;
+    return rest > 0 && (ball.middle - node).squaredNorm() < rest * rest;
   });
 }
 
-Occluders::Occluders(const Complex& surface, std::span<const FaceId> ids) {
-  parallel_invoke([&] { fronts = front_edges(surface, ids); },
-                  [&] {
-                    std::vector<std::array<Vec3, 3>> corners;
-                    for (const FaceId f : ids) corners.push_back(surface.corners(f));
-                    faces = TriangleBvh(corners);
-                  });
+void Occluders::update(const Complex& surface, std::span<const FaceId> ids) {
+  parallel_invoke([&] { fronts = front_edges(surface, ids); }, [&] { faces.update(surface, ids); });
 }
 
 Occluders all_occluders(const Complex& surface) {
   std::vector<FaceId> ids;
   for (std::uint32_t f = 0; f < surface.face_count(); ++f)
     if (surface.alive(FaceId(f))) ids.push_back(FaceId(f));
-  return {surface, ids};
+  Occluders all;
+  all.update(surface, ids);
+  return all;
 }
 
 Vec3 moved_off_faces(const Body& body, const Vec3& p) {
@@ -423,7 +431,8 @@ bool straight_shape(const Body& body, const PointBlock& block, std::size_t point
 }
 
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders,
-                      const VisibilityChanges* changes, std::span<const std::uint32_t> component) {
+                      const VisibilityChanges* changes, std::span<const std::uint32_t> component, Occluders* kept) {
+  Occluders own, &near = kept ? *kept : own;
   const NodeComponents components(component);
   const double largest_radius = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
   // Two passes: most points need no wider support, so the first pass queries small neighbourhoods.
@@ -433,7 +442,7 @@ void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Oc
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) batches[b].find_nodes(body, factors.back(), largest_radius, changes);
     });
-    const Occluders near = occluders ? Occluders() : near_occluders(body.surface, batches);
+    if (!occluders) near.update(body.surface, near_faces(body.surface, batches));
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b)
         batches[b].compute(body, factors, occluders ? *occluders : near, changes, components);

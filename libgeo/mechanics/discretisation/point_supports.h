@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/bvh.h"
 #include "kerf/body.h"
 #include "mechanics/discretisation/diffraction.h"
 #include "mechanics/discretisation/material_points.h"
@@ -20,11 +21,9 @@ constexpr std::array support_factors{1.0, 1.2, 1.44, 1.728, 2.0736};
 
 /// Faces that may hide nodes from points, and the crack fronts that a line of sight may bend round.
 struct Occluders {
-  /// None.
-  Occluders() = default;
-  /// The faces `ids` of the surface and their front edges.
-  Occluders(const Complex& surface, std::span<const FaceId> ids);
-  TriangleBvh faces;
+  /// Makes these the faces `ids` of the surface and their front edges.
+  void update(const Complex& surface, std::span<const FaceId> ids);
+  OccludingFaces faces;
   std::vector<FrontEdge> fronts;
 };
 /// All faces of a surface that are alive.
@@ -54,9 +53,22 @@ class VisibilityChanges {
   void faces_near(const Box3& points, double radius, std::vector<std::uint32_t>& faces) const;
   /// Those of `faces` that lines of sight of a point may touch, with `radius` the point's.
   std::vector<std::uint32_t> faces_near(const Vec3& x, double radius, std::span<const std::uint32_t> faces) const;
-  /// Whether one of the faces may touch a path from x to a node that is shorter than its support
-  /// admits. `faces`: those of faces_near() for x.
-  bool meet_bent_paths(const Vec3& x, const Vec3& node, double support, std::span<const std::uint32_t> faces) const;
+  /// Balls about faces, and how far they are from a point x.
+  struct NearBalls {
+    /// Whether one of the faces may touch a path from x to a node that is shorter than its support
+    /// admits.
+    bool meet_bent_paths(const Vec3& node, double support) const;
+
+    /// A ball about a face.
+    struct Ball {
+      Vec3 middle;
+      double twice_radius, distance;  ///< twice its radius; of its middle from x
+    };
+    Vec3 x;
+    std::vector<Ball> balls;
+  };
+  /// The balls about `faces`, which are those of faces_near() for x.
+  NearBalls balls_near(const Vec3& x, std::span<const std::uint32_t> faces) const;
 
  private:
   TriangleBvh faces_;
@@ -85,8 +97,10 @@ bool straight_shape(const Body& body, const PointBlock& block, std::size_t point
 /// touch are not tested again, with the same result. Null: all are tested. `component`: per node,
 /// of the visibility graph. A point sees nodes of one component only, so no paths to others are
 /// tried, and points of components with few nodes try fewer factors, with the same result. Empty:
-/// all are tried.
+/// all are tried. `kept`: nearby occluders of the call before, which become those of this one.
+/// Null: none.
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders = nullptr,
-                      const VisibilityChanges* changes = nullptr, std::span<const std::uint32_t> component = {});
+                      const VisibilityChanges* changes = nullptr, std::span<const std::uint32_t> component = {},
+                      Occluders* kept = nullptr);
 
 }  // namespace geo

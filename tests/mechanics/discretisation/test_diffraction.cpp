@@ -11,7 +11,7 @@ namespace {
 
 struct Cracked {
   Body body;
-  TriangleBvh faces;
+  OccludingFaces faces;
   std::vector<FrontEdge> edges;
 };
 
@@ -23,18 +23,16 @@ Cracked cracked(int steps) {
   for (int k = 1; k <= steps; ++k)
     split(c.body, front, blade_at({0.5, -0.2, 1.1}, {0.5, 1.2, 1.1}, {0, 0, -0.3}, k, 5));
   std::vector<FaceId> alive;
-  std::vector<std::array<Vec3, 3>> corners;
   for (std::uint32_t f = 0; f < c.body.surface.face_count(); ++f)
-    if (c.body.surface.alive(FaceId(f)))
-      alive.push_back(FaceId(f)), corners.push_back(c.body.surface.corners(FaceId(f)));
-  c.faces = TriangleBvh(corners);
+    if (c.body.surface.alive(FaceId(f))) alive.push_back(FaceId(f));
+  c.faces.update(c.body.surface, alive);
   c.edges = front_edges(c.body.surface, alive);
   return c;
 }
 
 // The node as x sees it round one of the edges.
 std::optional<SupportNode> seen_round(const Vec3& x, const Vec3& node, double support, std::span<const FrontEdge> edges,
-                                      const TriangleBvh& faces) {
+                                      const OccludingFaces& faces) {
   return diffracted_support(x, node, support, fronts_near(x, support, edges), faces);
 }
 

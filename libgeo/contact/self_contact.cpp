@@ -65,6 +65,7 @@ SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOpti
 
 ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const State& state, double dt,
                                     const Vec3& gravity, const std::vector<std::uint8_t>& fixed) {
+  update_weights(body, solid);
   const FreeMotion free = free_motion(body, solid, state, dt, gravity, fixed);
   const std::vector<Vec3>& targets = targets_at(body, state.displacement);
   const std::vector<Vec3> free_targets = surface_targets(body, weights_, free.displacement),
@@ -105,6 +106,7 @@ ContactStats SelfContact::finish_step_with_impulses(const Body& body, const Soli
                                                     const std::vector<Vec3>& before, double dt,
                                                     const std::vector<std::uint8_t>& fixed, State& state) {
   Stopwatch clock;
+  update_weights(body, solid);
   take_rotations(solid);
   const std::size_t touching =
       resolve_with_impulses({body, solid, weights_, before, dt, fixed},
@@ -150,11 +152,15 @@ EmbeddingPlan SelfContact::plan_embedding(const Body& body, const Solid& solid, 
   return {embed_new_surface({body, solid, state, surface(), positions(), grown, crack, gap()}), revision_};
 }
 
-void SelfContact::commit(EmbeddingPlan plan, const Body& body, const Solid& solid, const BodyDelta& delta) {
+void SelfContact::commit(EmbeddingPlan plan, const Body& body, const BodyDelta& delta) {
   if (plan.revision != revision_) throw std::logic_error("the surface has changed since the embedding was planned");
   surface_.replace(std::move(plan.embedding.surface), std::move(plan.embedding.positions));
   ++revision_, near_.reset();
-  targets_.invalidate(weights_.apply_delta(body, solid, delta));
+  weights_.mark_changed(body, delta);
+}
+
+void SelfContact::update_weights(const Body& body, const Solid& solid) {
+  if (weights_.has_changes()) targets_.invalidate(weights_.update(body, solid));
 }
 
 }  // namespace geo

@@ -70,8 +70,11 @@ class SelfContact {
   EmbeddingPlan plan_embedding(const Body& body, const Solid& solid, const State& state, const Complex& grown,
                                const CrackDelta& crack) const;
   /// Takes over the surface of a plan after its crack step, `delta`. Throws std::logic_error when
-  /// the surface has changed since the plan was made.
-  void commit(EmbeddingPlan plan, const Body& body, const Solid& solid, const BodyDelta& delta);
+  /// the surface has changed since the plan was made. update_weights() must follow, after one or
+  /// several steps.
+  void commit(EmbeddingPlan plan, const Body& body, const BodyDelta& delta);
+  /// Makes the weights follow the crack steps that were committed. A step that begins does so, too.
+  void update_weights(const Body& body, const Solid& solid);
 
   /// Sets Coulomb's coefficient of the steps to come.
   void set_friction(double friction) { options_.friction = friction; }
@@ -79,11 +82,11 @@ class SelfContact {
   /// World positions, per surface vertex; unspecified for dead ones.
   const std::vector<Vec3>& positions() const { return surface_.positions(); }
   /// Positions that Eq. 1 gives, per surface vertex, at displacements u of the nodes; valid until
-  /// the next call of a method that is not const.
+  /// the next call of a method that is not const. Precondition: update_weights().
   const std::vector<Vec3>& targets_at(const Body& body, const std::vector<Vec3>& u) {
     return targets_.at(body, weights_, u);
   }
-  /// Eq. 1 as weights of nodes.
+  /// Eq. 1 as weights of nodes, after update_weights().
   const SurfaceWeights& weights() const { return weights_; }
   /// Triangles and sites.
   const ContactSurface& surface() const { return surface_.topology(); }

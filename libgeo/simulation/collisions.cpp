@@ -54,11 +54,10 @@ StepVeto Collisions::embedding_check(const Body& body, const Solid& solid, const
   };
 }
 
-void Collisions::commit(std::optional<EmbeddingPlan> plan, const Body& body, const Solid& solid,
-                        const BodyDelta& delta) {
+void Collisions::commit(std::optional<EmbeddingPlan> plan, const Body& body, const BodyDelta& delta) {
   if (!surface_ || delta.crack.empty()) return;
   if (!plan) throw std::logic_error("no embedding was planned for this crack step");
-  surface_->commit(std::move(*plan), body, solid, delta);
+  surface_->commit(std::move(*plan), body, delta);
 }
 
 std::vector<Vec3> Collisions::living_positions(const Body& body) const {

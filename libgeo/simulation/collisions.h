@@ -32,7 +32,11 @@ class Collisions {
                            std::optional<EmbeddingPlan>& plan, double& seconds);
   /// Updates the surface after a crack step, by the plan of its embedding_check(). Throws
   /// std::logic_error if the step cut something and there is no plan.
-  void commit(std::optional<EmbeddingPlan> plan, const Body& body, const Solid& solid, const BodyDelta& delta);
+  void commit(std::optional<EmbeddingPlan> plan, const Body& body, const BodyDelta& delta);
+  /// Makes the surface's weights follow the crack steps.
+  void update_weights(const Body& body, const Solid& solid) {
+    if (surface_) surface_->update_weights(body, solid);
+  }
 
   /// Sets Coulomb's coefficient of the steps to come.
   void set_friction(double friction) {
@@ -43,10 +47,10 @@ class Collisions {
   bool on() const { return surface_.has_value(); }
   /// World positions of living surface vertices in ascending order; empty without self-contact.
   std::vector<Vec3> living_positions(const Body& body) const;
-  /// The surface's weights; null without self-contact.
+  /// The surface's weights, after update_weights(); null without self-contact.
   const SurfaceWeights* weights() const { return surface_ ? &surface_->weights() : nullptr; }
-  /// Targets of surface vertices (Eq. 1), valid until the next call of a method that is not const;
-  /// empty without self-contact.
+  /// Targets of surface vertices (Eq. 1), after update_weights(). Valid until the next call of a
+  /// method that is not const; empty without self-contact.
   std::span<const Vec3> targets(const Body& body, const State& motion) {
     return surface_ ? std::span<const Vec3>(surface_->targets_at(body, motion.displacement)) : std::span<const Vec3>();
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -54,6 +55,15 @@ Motion towards(const Motion& present, double from, double to, const Pose& pose) 
   return {{key_at(from, present.at(from)), key_at(to, pose)}};
 }
 
+// Runs two functions in parallel. Returns the time that they take less that of `timed`, which adds
+// its own to `seconds`.
+double seconds_beside(const double& seconds, const std::function<void()>& other, const std::function<void()>& timed) {
+  const double before = seconds;
+  Stopwatch watch;
+  parallel_invoke(other, timed);
+  return std::max(0.0, watch.lap() - (seconds - before));
+}
+
 void append(Motion& motion, const Motion::Key& key) {
   if (!motion.keys.empty() && !(motion.keys.back().time < key.time))
     throw InputError("a motion has a key at this time, or later");
@@ -74,6 +84,18 @@ struct Simulation::Impl {
     std::vector<Vec3> to;         // material positions
     std::vector<double> spacing;  // of the nodes there, model units
     double deviation = 0;         // see sheet_deviation()
+    std::size_t retreating = 0;   // points of `to` that hold_retreating() held
+  };
+  // A cut by a blade: its runs in the material, and the advance of each.
+  struct PlannedCut {
+    std::vector<std::vector<EdgePoint>> runs;
+    std::vector<Advance> advances;
+  };
+  // The first cut of the first blade that is active in a time step.
+  struct FirstCut {
+    std::size_t blade;
+    int cuts;  // by this blade in the step
+    PlannedCut plan;
   };
 
   Impl(const Scene& scene_in, Body body_in, RunState state_in);
@@ -84,13 +106,18 @@ struct Simulation::Impl {
 
   void apply_changes(double time);
   void step(const TimeStep& step, FrameStats& stats);
-  void cut(const std::vector<Vec3>& before, const TimeStep& step, FrameStats& stats);
+  MovedBody moved_body(const TimeStep& step) const { return {body, solid, state.motion, way, step.begin, step.end}; }
+  std::optional<FirstCut> plan_first_cut(const TimeStep& step);
+  void cut(const TimeStep& step, std::optional<FirstCut> first, FrameStats& stats);
   std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction);
-  void cut_to(const MovedBody& moved, std::size_t blade, int k, int cuts, FrameStats& stats);
+  int begin_cuts(const MovedBody& moved, std::size_t blade);
+  PlannedCut plan_cut(const MovedBody& moved, std::size_t blade, int k, int cuts);
+  void make_cut(std::size_t blade, PlannedCut plan, FrameStats& stats);
   Advance advance_of(const EdgeFront& front, std::span<const EdgePoint> run, const MapAt& half, const Blade& blade,
-                     const FrontAnchor& anchor, FrameStats& stats) const;
+                     const FrontAnchor& anchor) const;
   std::optional<std::vector<FaceId>> split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
   void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
+  void update_points();
   std::int32_t unused_crack() const;
   void add_wedges();
   std::optional<ContactStep> begin_contact(double dt, FrameStats& stats);
@@ -112,7 +139,8 @@ struct Simulation::Impl {
   PullPotential pull;
   Obstacles obstacles;
   std::optional<Collisions> collisions;
-  NodeWay way;  // of this time step, while blades cut
+  NodeWay way;              // of this time step, while blades cut
+  std::mutex points_guard;  // held by update_points()
   std::size_t crumbs = 0;
   bool cut_since_build = false;  // of the solid
 };
@@ -177,8 +205,8 @@ void Simulation::Impl::reset_environment() {
 // In the boxes of the grips at a time. Precondition: the solid's points are up to date.
 void Simulation::Impl::hold_material(double time) { solid.hold(body, GrippedNodes::boxes(scene.grips, time)); }
 
-// Updates mechanics and contact after a crack step. `plan`: of the surface, empty without
-// self-contact.
+// Updates nodes and contact after a crack step. `plan`: of the surface, empty without self-contact.
+// Points and weights of the surface wait for the next time step, and points for fracture.
 void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
@@ -186,16 +214,22 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<Embeddi
   parallel_invoke([&] { reset_environment(); },
                   [&] {
                     solid.update_nodes(body, delta, state.motion);
-                    if (scene.fracture.on) solid.update_points(body, state.motion);
+                    if (scene.fracture.on) update_points();
                   });
   for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
   way.add_nodes(delta.donors);
   if (!delta.detached.empty()) crumbs = count_crumbs(body);
   stats.mechanics_seconds += watch.lap();
-  if (collisions) collisions->commit(std::move(plan), body, solid, delta);
+  if (collisions) collisions->commit(std::move(plan), body, delta);
   obstacles.invalidate_weights();
   pull.invalidate();
   stats.contact_seconds += watch.lap();
+}
+
+// Makes the solid's points follow all crack steps, unless they do.
+void Simulation::Impl::update_points() {
+  const std::lock_guard lock(points_guard);
+  solid.update_points(body, state.motion);
 }
 
 // One step of a crack. Returns its new faces; nothing, and counts it, where it cannot be made.
@@ -216,28 +250,49 @@ std::optional<std::vector<FaceId>> Simulation::Impl::split_step(FrontState& fron
   }
 }
 
-// Moves all blades through the time step that the nodes have just made, from `before` to where they
-// are.
-void Simulation::Impl::cut(const std::vector<Vec3>& before, const TimeStep& step, FrameStats& stats) {
+// Plans the first cut of a time step that the nodes have made. Precondition: `way`.
+std::optional<Simulation::Impl::FirstCut> Simulation::Impl::plan_first_cut(const TimeStep& step) {
+  const auto is_active = [&](const Blade& blade) { return blade.active(step.begin); };
+  const auto blade = std::find_if(scene.blades.begin(), scene.blades.end(), is_active);
+  if (blade == scene.blades.end()) return {};
+  const MovedBody moved = moved_body(step);
+  FirstCut first{static_cast<std::size_t>(blade - scene.blades.begin()), 0, {}};
+  first.cuts = begin_cuts(moved, first.blade);
+  if (first.cuts > 0) first.plan = plan_cut(moved, first.blade, 1, first.cuts);
+  return first;
+}
+
+// Moves all blades through the time step that the nodes have just made. `first`: the first cut, if
+// it is planned. Precondition: `way`.
+void Simulation::Impl::cut(const TimeStep& step, std::optional<FirstCut> first, FrameStats& stats) {
   if (scene.blades.empty()) return;
-  way = NodeWay(before, state.motion.displacement);
-  const MovedBody moved{body, solid, state.motion, way, step.begin, step.end};
+  const MovedBody moved = moved_body(step);
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
-    const Blade& blade = scene.blades[b];
-    if (!blade.active(step.begin)) {
+    if (!scene.blades[b].active(step.begin)) {
       state.fronts[b].clear();
       continue;
     }
+    const bool is_planned = first && first->blade == b;
     Stopwatch watch;
-    if (state.fronts[b].empty()) map_edge(moved, b, 0);
-    const int cuts = number_of_cuts(moved, blade, state.fronts[b]);
-    stats.front_seconds += watch.lap();
-    for (int k = 1; k <= cuts; ++k) cut_to(moved, b, k, cuts, stats);
+    const int cuts = is_planned ? first->cuts : begin_cuts(moved, b);
+    for (int k = 1; k <= cuts; ++k) {
+      PlannedCut plan = is_planned && k == 1 ? std::move(first->plan) : plan_cut(moved, b, k, cuts);
+      stats.front_seconds += watch.lap();
+      make_cut(b, std::move(plan), stats);
+      watch.lap();
+    }
   }
   way = NodeWay();
-  Stopwatch watch;
-  solid.update_points(body, state.motion);
+  if (state.motion.plastic.empty()) return;
+  Stopwatch watch;  // plastic strains are of points
+  update_points();
   stats.mechanics_seconds += watch.lap();
+}
+
+// Maps the edge of a blade that has no fronts yet. Returns the number of its cuts in the step.
+int Simulation::Impl::begin_cuts(const MovedBody& moved, std::size_t b) {
+  if (state.fronts[b].empty()) map_edge(moved, b, 0);
+  return number_of_cuts(moved, scene.blades[b], state.fronts[b]);
 }
 
 // The runs of a blade's edge in the material at a fraction of a time step. Its fronts become those
@@ -259,33 +314,35 @@ std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& 
   return runs;
 }
 
-// Advances the fronts of a blade to the end of cut k of a time step.
-void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int cuts, FrameStats& stats) {
-  Stopwatch watch;
+// The advance of a blade's fronts to the end of cut k of a time step. All runs ask the map of the
+// body as it is before any of them cuts.
+Simulation::Impl::PlannedCut Simulation::Impl::plan_cut(const MovedBody& moved, std::size_t b, int k, int cuts) {
   const Blade& blade = scene.blades[b];
-  std::vector<EdgeFront>& fronts = state.fronts[b];
-  auto runs = map_edge(moved, b, double(k) / cuts);
+  PlannedCut plan{map_edge(moved, b, double(k) / cuts), {}};
+  if (plan.runs.empty()) return plan;
   std::optional<MapAt> start, half;
-  if (!runs.empty())
-    parallel_invoke([&] { start.emplace(moved, blade, (k - 1.0) / cuts); },
-                    [&] { half.emplace(moved, blade, (k - 0.5) / cuts); });
-  stats.front_seconds += watch.lap();
-  // The map belongs to the body before the first split: all runs ask it before any of them cuts.
-  std::vector<Advance> advances;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const FrontAnchor anchor(body.surface, *start, blade, fronts[r]);
-    for (EdgePoint& p : runs[r]) p.material = anchor.corrected(p.at, p.material, p.spacing);
-    advances.push_back(advance_of(fronts[r], runs[r], *half, blade, anchor, stats));
+  parallel_invoke([&] { start.emplace(moved, blade, (k - 1.0) / cuts); },
+                  [&] { half.emplace(moved, blade, (k - 0.5) / cuts); });
+  for (std::size_t r = 0; r < plan.runs.size(); ++r) {
+    const EdgeFront& front = state.fronts[b][r];
+    const FrontAnchor anchor(body.surface, *start, blade, front);
+    for (EdgePoint& p : plan.runs[r]) p.material = anchor.corrected(p.at, p.material, p.spacing);
+    plan.advances.push_back(advance_of(front, plan.runs[r], *half, blade, anchor));
   }
-  stats.front_seconds += watch.lap();
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    auto& [edge, to, spacing, deviation] = advances[r];
+  return plan;
+}
+
+// Advances the fronts of a blade.
+void Simulation::Impl::make_cut(std::size_t b, PlannedCut plan, FrameStats& stats) {
+  for (std::size_t r = 0; r < plan.runs.size(); ++r) {
+    auto& [edge, to, spacing, deviation, retreating] = plan.advances[r];
+    stats.sheet.retreating += retreating;
     ++stats.fronts;
     const auto faces = split_step(edge.front, to, stats);
-    watch.lap();
     if (!faces) continue;
-    collapse(edge, runs[r]);
-    fronts[r] = std::move(edge);
+    Stopwatch watch;
+    collapse(edge, plan.runs[r]);
+    state.fronts[b][r] = std::move(edge);
     stats.sheet.deviation = std::max(stats.sheet.deviation, deviation);
     const double lowest = 0.1 * *std::min_element(spacing.begin(), spacing.end());
     stats.sheet.turning = std::max(stats.sheet.turning, sheet_turning(body.surface, *faces, lowest));
@@ -296,12 +353,12 @@ void Simulation::Impl::cut_to(const MovedBody& moved, std::size_t b, int k, int 
 // The next position of a front. `half`: the map at half the time of the cut; `anchor`: of the
 // front.
 Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, std::span<const EdgePoint> run,
-                                                       const MapAt& half, const Blade& blade, const FrontAnchor& anchor,
-                                                       FrameStats& stats) const {
+                                                       const MapAt& half, const Blade& blade,
+                                                       const FrontAnchor& anchor) const {
   Advance a;
   a.edge = refined(front, run, a.to);
   for (const double at : a.edge.at) a.spacing.push_back(nearest(run, at).spacing);
-  stats.sheet.retreating += hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
+  a.retreating = hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
   a.deviation = sheet_deviation(body, half, blade, a.edge, a.to, anchor);
   return a;
 }
@@ -335,6 +392,7 @@ void Simulation::Impl::add_wedges() {
 // self-contact.
 std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
+  collisions->update_weights(body, solid);
   const std::span<const Vec3> surface =
       obstacles.any() ? collisions->targets(body, state.motion) : std::span<const Vec3>();
   obstacles.add_potentials(
@@ -348,7 +406,6 @@ std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats
 void Simulation::Impl::integrate(const TimeStep& step, FrameStats& stats) {
   Stopwatch watch;
   const double dt = step.dt, share = dt * scene.frame_rate;
-  solid.update_points(body, state.motion);
   hold_material(step.end);
   const StepReport report = scene.implicit ? solid.step_implicit(state.motion, dt, environment, scene.accuracy)
                                            : solid.step_explicit(state.motion, dt, environment);
@@ -398,11 +455,24 @@ void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   add_wedges();
   pull.begin_step(scene.pulls, body, solid, step.begin, step.end);
   if (!pull.empty()) environment.contact.push_back(&pull);
-  std::optional<ContactStep> contact = begin_contact(step.dt, stats);
+  // Contact needs the nodes of the solid, not its points.
+  std::optional<ContactStep> contact;
+  stats.mechanics_seconds += seconds_beside(
+      stats.contact_seconds, [&] { update_points(); }, [&] { contact = begin_contact(step.dt, stats); });
   integrate(step, stats);
-  finish_contact(std::move(contact), before, step.dt, stats);
+  std::optional<FirstCut> first;
+  if (scene.implicit) {
+    // Contact reads the nodes, and so does the plan of a cut. Only a cut changes what both read.
+    way = NodeWay(before, state.motion.displacement);
+    stats.front_seconds += seconds_beside(
+        stats.contact_seconds, [&] { first = plan_first_cut(step); },
+        [&] { finish_contact(std::move(contact), before, step.dt, stats); });
+  } else {
+    finish_contact(std::move(contact), before, step.dt, stats);
+    way = NodeWay(before, state.motion.displacement);
+  }
   state.time = step.end;
-  cut(before, step, stats);
+  cut(step, std::move(first), stats);
   fracture(step.dt, stats);
 }
 
@@ -430,7 +500,10 @@ Simulation::~Simulation() = default;
 
 const Body& Simulation::body() const { return impl_->body; }
 const RunState& Simulation::state() const { return impl_->state; }
-const Solid& Simulation::solid() const { return impl_->solid; }
+const Solid& Simulation::solid() const {
+  impl_->update_points();
+  return impl_->solid;
+}
 const Scene& Simulation::scene() const { return impl_->scene; }
 
 void Simulation::restore(Body body, RunState state) { impl_->restore(std::move(body), std::move(state)); }

@@ -50,7 +50,8 @@ int contact(const Options& options) {
                                                 });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
         const double start = cpu_seconds();
-        if (plan) surface.commit(std::move(*plan), body, solid, delta);
+        if (plan) surface.commit(std::move(*plan), body, delta);
+        surface.update_weights(body, solid);
         following += cpu_seconds() - start;
       }
     }

@@ -164,6 +164,6 @@ TEST_CASE("steps and plans that no longer fit the surface are refused") {
                 finish(begin());
               });
     REQUIRE(plan.has_value());
-    CHECK_THROWS_AS(block.contact.commit(std::move(*plan), block.body, block.solid, delta), std::logic_error);
+    CHECK_THROWS_AS(block.contact.commit(std::move(*plan), block.body, delta), std::logic_error);
   }
 }

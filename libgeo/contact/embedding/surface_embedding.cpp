@@ -214,7 +214,7 @@ class SurfaceEmbedder {
     for (std::size_t i = 0; i < waiting.size(); ++i)
       if (i == 0 || waiting[i].first != waiting[i - 1].first) first.push_back(i);
     std::vector<std::pair<Vec3, SurfaceVertexId>> found(first.size());
-    parallel_for(found.size(), 4, [&](std::size_t begin, std::size_t end) {
+    parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) found[i] = continued_surface(VertexId(waiting[first[i]].first), is_new);
     });
     first.push_back(waiting.size());
@@ -227,13 +227,28 @@ class SurfaceEmbedder {
   std::pair<Vec3, SurfaceVertexId> continued_surface(VertexId site, const std::vector<std::uint8_t>& is_new) const {
     const Vec3& x = k_.point(site);
     const Surroundings visible = surroundings(site, is_new);
+    // Many points have the same carrying node, and so the same nodes.
+    struct Carrier {
+      NodeId node;
+      std::vector<NodeId> nodes;
+      Vec3 at_site;  // the displacement
+    };
+    std::vector<Carrier> carriers;
+    const auto carrier_of = [&](SurfaceVertexId v) -> const Carrier& {
+      const NodeId node = carrying_node(v);
+      for (const Carrier& c : carriers)
+        if (c.node == node) return c;
+      Carrier& c = carriers.emplace_back(Carrier{node, with_neighbors(node), {}});
+      c.at_site = displacement(x, c.nodes);
+      return c;
+    };
     Vec3 sum = Vec3::Zero();
     SurfaceVertexId reference;
     double total = 0, nearest = std::numeric_limits<double>::infinity();
     for (const VisiblePoint& p : visible.points) {
-      const auto nodes = nodes_of(p.reference);
+      const Carrier& carrier = carrier_of(p.reference);
       const double weight = std::pow(p.distance / visible.reach, -4);
-      sum += weight * (p.now + x - p.rest + displacement(x, nodes) - displacement(p.rest, nodes)), total += weight;
+      sum += weight * (p.now + x - p.rest + carrier.at_site - displacement(p.rest, carrier.nodes)), total += weight;
       if (p.distance < nearest) nearest = p.distance, reference = p.reference;
     }
     return {total > 0 ? Vec3(sum / total) : Vec3(x + displacement(x, nodes_near(x))), reference};
@@ -297,7 +312,9 @@ class SurfaceEmbedder {
       throw GeometryError("the surface would cross itself where the crack begins to open");
   }
 
+  // None for an invalid node.
   std::vector<NodeId> with_neighbors(NodeId m) const {
+    if (!m.valid()) return {};
     std::vector<NodeId> nodes{m};
     for (const auto& n : in_.body.graph.neighbors(in_.body.nodes, m)) nodes.push_back(n.to);
     return nodes;
@@ -307,11 +324,12 @@ class SurfaceEmbedder {
         in_.body.cache->grid.nearest(in_.body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; });
     return nearest.empty() ? std::vector<NodeId>() : with_neighbors(NodeId(nearest[0]));
   }
-  // The nodes that carry an old surface vertex.
-  std::vector<NodeId> nodes_of(SurfaceVertexId v) const {
+  // The node that carries an old surface vertex.
+  NodeId carrying_node(SurfaceVertexId v) const {
     const auto master = v.valid() ? in_.body.binding.master[v.index()] : SurfaceVertexId();
-    return master.valid() ? with_neighbors(in_.body.binding.master_node[master.index()]) : std::vector<NodeId>();
+    return master.valid() ? in_.body.binding.master_node[master.index()] : NodeId();
   }
+  std::vector<NodeId> nodes_of(SurfaceVertexId v) const { return with_neighbors(carrying_node(v)); }
   // Eq. 1 at x, blended over the nodes of `nodes` whose support contains x; the first if none does.
   Vec3 displacement(const Vec3& x, const std::vector<NodeId>& nodes) const {
     if (nodes.empty()) return Vec3::Zero();

@@ -58,14 +58,14 @@ class StencilSums {
 }  // namespace
 
 void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
-  stencils_.clear(), heaviest_.clear(), norm_.clear(), area_.clear(), arms_.clear();
+  stencils_.clear(), heaviest_.clear(), norm_.clear(), area_.clear(), arms_.clear(), changed_.clear();
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
   compute(body, solid, all);
   set_rotations(solid);
 }
 
-std::vector<std::uint32_t> SurfaceWeights::apply_delta(const Body& body, const Solid& solid, const BodyDelta& delta) {
+void SurfaceWeights::mark_changed(const Body& body, const BodyDelta& delta) {
   // A stencil depends on the neighbours of the vertex' nodes and of their neighbours.
   std::vector<std::uint8_t> stale_node(body.nodes.size(), 0);
   for (const NodeId i : delta.updated_nodes) {
@@ -73,20 +73,25 @@ std::vector<std::uint32_t> SurfaceWeights::apply_delta(const Body& body, const S
     for (const auto& n : body.graph.neighbors(body.nodes, i)) stale_node[n.to.index()] = 1;
   }
   const std::size_t n = body.surface.surface_vertex_count();
-  std::vector<std::uint8_t> stale(n, 0);
-  for (const auto v : delta.rebound_vertices) stale[v.index()] = 1;
+  changed_.resize(n, 0);
+  for (const auto v : delta.rebound_vertices) changed_[v.index()] = 1;
   for (const auto* some : {&delta.crack.new_surface_vertices, &delta.crack.touched_surface_vertices})
-    for (const auto v : *some) stale[v.index()] = 1;
+    for (const auto v : *some) changed_[v.index()] = 1;
   parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const SurfaceVertexId master =
           body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
-      stale[v] = stale[v] || !master.valid() || stale_node[body.binding.master_node[master.index()].index()];
+      changed_[v] = changed_[v] || !master.valid() || stale_node[body.binding.master_node[master.index()].index()];
     }
   });
+}
+
+std::vector<std::uint32_t> SurfaceWeights::update(const Body& body, const Solid& solid) {
   std::vector<std::uint32_t> vertices;
-  for (std::uint32_t v = 0; v < n; ++v)
-    if (stale[v]) vertices.push_back(v);
+  if (!has_changes()) return vertices;
+  for (std::uint32_t v = 0; v < changed_.size(); ++v)
+    if (changed_[v]) vertices.push_back(v);
+  changed_.clear();
   compute(body, solid, vertices);
   set_rotations(solid);
   return vertices;

@@ -20,9 +20,13 @@ class SurfaceWeights {
   /// Computes the stencils of all living surface vertices: the kernel weights of Eq. 1 and, through
   /// the shape gradients of its nodes, weights of their neighbours. The cost follows the surface.
   void rebuild(const Body& body, const Solid& solid);
-  /// Updates the stencils that the last split of the body may have changed; the result is that of
-  /// rebuild(). Returns their vertices, ascending.
-  std::vector<std::uint32_t> apply_delta(const Body& body, const Solid& solid, const BodyDelta& delta);
+  /// Marks the stencils that a split of the body may have changed, for update().
+  void mark_changed(const Body& body, const BodyDelta& delta);
+  /// Computes the marked stencils; the result is that of rebuild(). Returns their vertices,
+  /// ascending. The cost follows the marks.
+  std::vector<std::uint32_t> update(const Body& body, const Solid& solid);
+  /// Whether stencils are marked.
+  bool has_changes() const { return !changed_.empty(); }
 
   /// Takes over the rotations of debris (State::rotation) from the solid, after a step of it.
   /// Returns whether there is any.
@@ -58,6 +62,7 @@ class SurfaceWeights {
   std::vector<double> area_, norm_;
   std::vector<std::vector<Arm>> arms_;  // per vertex: to its nodes without a full gradient
   std::vector<Vec3> rotated_;           // per vertex; empty: zero
+  std::vector<std::uint8_t> changed_;   // per vertex: 1 if marked; empty: none is
 };
 
 }  // namespace geo

@@ -58,7 +58,8 @@ TEST_CASE("remembered targets are those computed anew, after moves and after a c
   for (const double z : {0.8, 0.5}) {
     const BodyDelta delta = split(body, front, {{0.51, -0.3, z}, {0.49, 1.3, z}});
     solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
-    const auto changed = weights.apply_delta(body, solid, delta);
+    weights.mark_changed(body, delta);
+    const auto changed = weights.update(body, solid);
     REQUIRE_FALSE(changed.empty());
     REQUIRE(changed.size() < weights.size());  // else nothing is remembered
     cache.invalidate(changed);

@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
            "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700; "
            "simulation: 2000, 8000, 32000, 128000, 512000, 1000000, after the scenes of the samples)");
   t.option("--cuts", options.cuts, "How many cuts go through the block");
-  t.option("--model", options.models, "Closed meshes to measure as well");
+  t.option("--model", options.models,
+           "Closed meshes to measure as well; live: these alone, each cut into a heap of pieces");
   return t.run(argc, argv, [&] {
     std::map<std::string, int (*)(const bench::Options&)> known{
         {"crack", bench::crack},          {"block", bench::block},

@@ -15,6 +15,7 @@
 #include "client.h"
 #include "kerf/mesh.h"
 #include "live/loop.h"
+#include "live_heap.h"
 #include "sample_scenes.h"
 
 namespace bench {
@@ -205,6 +206,11 @@ double cut_ratio(const std::string& name, double seconds) {
 
 int live(const Options& options) {
   Figures figures;
+  for (const std::string& model : options.models) heap(model, figures);
+  if (!options.models.empty()) {
+    print(figures, options.json);
+    return 0;
+  }
   const double seconds = 12;
   const auto add = [&](const std::string& name, double rate) {
     const Shown shown = show(name, rate, seconds);

@@ -77,7 +77,7 @@ struct FrameStats {
   std::size_t cg = 0;           ///< conjugate-gradient iterations
   std::size_t steps = 0;        ///< time steps
   double fracture_seconds = 0;  ///< stresses and plans, without the splits
-  double front_seconds = 0;     ///< mapping of blades into the material
+  double front_seconds = 0;     ///< mapping of blades into the material, as far as it is not beside contact
   double mechanics_seconds = 0, contact_seconds = 0, write_seconds = 0;
   double energy = 0;                  ///< elastic, J, at the frame's end
   std::vector<Vec3> blade_force;      ///< per blade: exerted by the material, N, mean over the frame
@@ -197,7 +197,8 @@ class Simulation {
   const Body& body() const;
   /// Motion, fronts and time.
   const RunState& state() const;
-  /// The mechanics of the nodes: energy, stress, fields.
+  /// The mechanics of the nodes: energy, stress, fields. After a cut, updates the solid's points
+  /// first, if the next frame has not yet.
   const Solid& solid() const;
   /// The scene with all that was added, moved and changed, and with the values that hold now.
   const Scene& scene() const;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "kerf/parallel.h"
+
 namespace geo {
 namespace {
 
@@ -76,6 +78,19 @@ std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceI
     }
   }
   return edges;
+}
+
+void Occluders::update(const Complex& surface, std::span<const FaceId> ids) {
+  parallel_invoke([&] { fronts = front_edges(surface, ids); }, [&] { faces.update(surface, ids); });
+}
+
+Occluders all_occluders(const Complex& surface) {
+  std::vector<FaceId> ids;
+  for (std::uint32_t f = 0; f < surface.face_count(); ++f)
+    if (surface.alive(FaceId(f))) ids.push_back(FaceId(f));
+  Occluders all;
+  all.update(surface, ids);
+  return all;
 }
 
 double longest_path(double straight, double support) { return std::sqrt(std::sqrt(support / straight)) * straight; }

@@ -21,6 +21,16 @@ struct FrontEdge {
 /// The front edges of the crack faces among `faces`, in the order of faces and their corners.
 std::vector<FrontEdge> front_edges(const Complex& complex, std::span<const FaceId> faces);
 
+/// Faces that may hide nodes from points, and the crack fronts that a line of sight may bend round.
+struct Occluders {
+  /// Makes these the faces `ids` of the surface and their front edges.
+  void update(const Complex& surface, std::span<const FaceId> ids);
+  OccludingFaces faces;
+  std::vector<FrontEdge> fronts;
+};
+/// All faces of a surface that are alive.
+Occluders all_occluders(const Complex& surface);
+
 /// A path bends within support / 1024 of a front edge; twice that covers rounding. The unit is
 /// the support.
 constexpr double bend_margin = 1.0 / 512;

@@ -4,8 +4,8 @@
 
 #include <functional>
 
+#include "mechanics/discretisation/diffraction.h"
 #include "mechanics/discretisation/material_points.h"
-#include "mechanics/discretisation/point_supports.h"
 #include "mechanics/discretisation/quadrature.h"
 
 namespace geo {

@@ -374,19 +374,6 @@ bool VisibilityChanges::NearBalls::meet_bent_paths(const Vec3& node, double supp
   });
 }
 
-void Occluders::update(const Complex& surface, std::span<const FaceId> ids) {
-  parallel_invoke([&] { fronts = front_edges(surface, ids); }, [&] { faces.update(surface, ids); });
-}
-
-Occluders all_occluders(const Complex& surface) {
-  std::vector<FaceId> ids;
-  for (std::uint32_t f = 0; f < surface.face_count(); ++f)
-    if (surface.alive(FaceId(f))) ids.push_back(FaceId(f));
-  Occluders all;
-  all.update(surface, ids);
-  return all;
-}
-
 Vec3 moved_off_faces(const Body& body, const Vec3& p) {
   if (!is_on_face(body.surface, p)) return p;
   const auto near = body.cache->grid.nearest(body.nodes.position, p, 1, ~0u, [](auto) { return true; })[0];

@@ -19,16 +19,6 @@ namespace geo {
 /// nodes.
 constexpr std::array support_factors{1.0, 1.2, 1.44, 1.728, 2.0736};
 
-/// Faces that may hide nodes from points, and the crack fronts that a line of sight may bend round.
-struct Occluders {
-  /// Makes these the faces `ids` of the surface and their front edges.
-  void update(const Complex& surface, std::span<const FaceId> ids);
-  OccludingFaces faces;
-  std::vector<FrontEdge> fronts;
-};
-/// All faces of a surface that are alive.
-Occluders all_occluders(const Complex& surface);
-
 /// The position of a point that is intended at p. A point on a face belongs to neither side, so it
 /// is moved towards the nearest node by a small fraction of the distance.
 Vec3 moved_off_faces(const Body& body, const Vec3& p);

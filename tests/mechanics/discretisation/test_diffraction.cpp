@@ -83,7 +83,9 @@ TEST_CASE(
     };
     const Vec3 x = side(-1), node = side(1);
     const double support = 0.6, step = 1e-7;
-    if (!c.faces.blocks(x, node)) continue;
+    std::uint8_t hidden = 0;
+    c.faces.blocks(x, {&node, 1}, &hidden);
+    if (!hidden) continue;
     const auto here = seen_round(x, node, support, c.edges, c.faces);
     if (!here) continue;
     INFO("seed " << seed);

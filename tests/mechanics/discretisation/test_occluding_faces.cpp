@@ -82,7 +82,7 @@ TEST_CASE("a set of no faces blocks nothing", "[supports]") {
   CHECK(result == 0);
   faces.update(surface, {});
   CHECK(faces.empty());
-  const std::vector<FaceId> one{FaceId(0)};
+  const std::vector<FaceId> one{FaceId(0u)};
   faces.update(surface, one);
   CHECK_FALSE(faces.empty());
 }

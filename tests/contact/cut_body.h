@@ -18,7 +18,8 @@ inline BodyDelta cut(Body& body, Solid& solid, State& state, SelfContact& contac
   });
   solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
   REQUIRE(plan.has_value() == !delta.crack.empty());
-  if (plan) contact.commit(std::move(*plan), body, solid, delta);
+  if (plan) contact.commit(std::move(*plan), body, delta);
+  contact.update_weights(body, solid);
   return delta;
 }
 

@@ -1,6 +1,6 @@
 // repair_connectivity() of body/connectivity.h: narrow passages, pieces without a node (§ 6.4). An
 // edge between components that see each other; else nodes at the passage's walls, or along a taut
-// path, which comes first where a cut has just narrowed the passage (docs/decisions/032).
+// path, which comes first where a cut has just parted many nodes (docs/decisions/032).
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -201,8 +201,8 @@ class ConnectivityRepair {
     }
   }
   // By an edge where two components see each other; else along a taut path, in later rounds or
-  // where it is known where the passage is; else by sampling the passage (first round: returns the
-  // faces to sample near).
+  // where a cut has parted many nodes; else by sampling the passage (first round: returns the faces
+  // to sample near).
   std::vector<FaceId> connect_components(int round, double spacing) {
     Regions components = components_of(body_);
     NearestInPiece nearest(body_);
@@ -217,7 +217,9 @@ class ConnectivityRepair {
       std::sort(component.begin(), component.end());
       if (join_by_visible_edge(body_, nearest, component, joins_)) continue;
       const auto ends = ends_at_passage(component);
-      if ((round > 0 || !ends.empty()) && join_by_taut_path(nearest, i, component, ends, spacing)) continue;
+      // A part with no more nodes than a node has edges needs more: it is thin, or small.
+      const bool path_first = !ends.empty() && component.size() > static_cast<std::size_t>(body_.k);
+      if ((round > 0 || path_first) && join_by_taut_path(nearest, i, component, ends, spacing)) continue;
       if (round == 0)
         for (const auto n : ends.empty() ? component : ends) {
           const Vec3& x = body_.nodes.position[n];

@@ -64,11 +64,41 @@ class NodeComponents {
   std::vector<std::uint32_t> size_;
 };
 
+// Supports of nodes, coordinate by coordinate, so that loops over them use vectors.
+class Balls {
+ public:
+  Balls(const Body& body, std::span<const std::uint32_t> nodes, double factor) : squared_radius_(nodes.size()) {
+    constexpr double margin = 1 + 1e-12;  // far beyond rounding
+    for (auto& of_axis : center_) of_axis.resize(nodes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const Vec3& x = body.nodes.position[nodes[k]];
+      const double r = factor * body.nodes.radius[nodes[k]];
+      for (std::size_t axis = 0; axis < 3; ++axis) center_[axis][k] = x[static_cast<Eigen::Index>(axis)];
+      squared_radius_[k] = margin * r * r;
+    }
+  }
+  // Sets `holds` to 1 where a ball holds x, and may do so where x is on its surface but for
+  // rounding.
+  void hold(const Vec3& x, std::vector<std::uint8_t>& holds) const {
+    const double* const u = center_[0].data();
+    const double* const v = center_[1].data();
+    const double* const w = center_[2].data();
+    for (std::size_t k = 0; k < holds.size(); ++k) {
+      const double a = u[k] - x[0], b = v[k] - x[1], c = w[k] - x[2];
+      holds[k] = a * a + b * b + c * c < squared_radius_[k];
+    }
+  }
+
+ private:
+  std::array<std::vector<double>, 3> center_;
+  std::vector<double> squared_radius_;
+};
+
 // Tasks of neighbouring points, with the nodes that may support each, and fronts that they share.
 struct Batch {
   std::span<const SupportTask> tasks;
   std::vector<std::size_t> first;                   // per task and one more, into `nodes`
-  std::vector<std::uint32_t> nodes;                 // of each task, ascending
+  std::vector<std::uint32_t> nodes;                 // that may support each task, ascending
   std::vector<std::vector<std::uint32_t>> changed;  // per task: faces that lines of sight may touch
   std::vector<FrontEdge> fronts;
   Box3 influence;                      // holds all lines of sight to be tested, bent ones included
@@ -83,13 +113,16 @@ struct Batch {
     double largest = 0;
     first.assign(1, 0);
     const auto all = supporting_nodes(body, box, factor, largest_radius);
+    const Balls supports(body, all, factor);
+    std::vector<std::uint8_t> holds(all.size());
     for (const SupportTask& task : tasks) {
       const Vec3& x = task.point->position;
       influence.add(x);
       changed.push_back(changed_near(task, changes));
       const bool recalls = sees_as_before(task, factor, changes, changed.back());
-      for (const auto j : all)
-        if ((position[j] - x).norm() < factor * radius[j]) {
+      supports.hold(x, holds);
+      for (std::size_t k = 0; k < all.size(); ++k)
+        if (const auto j = all[k]; holds[k]) {
           nodes.push_back(j);
           if (!recalls || changes->has_changed(j)) influence.add(position[j]), largest = std::max(largest, radius[j]);
         }

@@ -101,6 +101,8 @@ class RecordedRun {
       const int frame = run_.state().frame + 1;
       geo::FrameStats stats = advance_frame(frame, last, forecast, progress);
       geo::Stopwatch writing;
+      run_.solid();  // its points follow the last cut here, not while files are written
+      stats.mechanics_seconds += writing.lap();
       sim::Frame done = frame_of({frame, run_.state().time, run_.body().nodes.size(),
                                   run_.body().surface.live_face_count(), std::move(stats)});
       done.outcome.stats.write_seconds = waited + writing.lap();

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
+#include <exception>
 #include <memory>
 
 #include "base/parallel_threads.h"
@@ -44,14 +45,27 @@ void parallel_for(std::size_t count, std::size_t grain, const std::function<void
 }
 
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
+  // An exception that passed a task would cancel loops within the other one, which would go on with
+  // what they had left undone.
+  std::exception_ptr failures[2];
+  const auto guarded = [&](std::size_t i) {
+    try {
+      i == 0 ? first() : second();
+    } catch (...) {
+      failures[i] = std::current_exception();
+    }
+  };
+  if (threads() == 1 || serial_scopes > 0) {
+    guarded(0), guarded(1);
+  } else {
 #ifdef KERF_SANITIZE_THREADS
-  if (threads() > 1 && serial_scopes == 0)
-    return parallel_for_by_threads(threads(), 2, 1, [&](std::size_t i, std::size_t) { i == 0 ? first() : second(); });
+    parallel_for_by_threads(threads(), 2, 1, [&](std::size_t i, std::size_t) { guarded(i); });
 #else
-  if (threads() > 1 && serial_scopes == 0) return tbb::parallel_invoke(first, second);
+    tbb::parallel_invoke([&] { guarded(0); }, [&] { guarded(1); });
 #endif
-  first();
-  second();
+  }
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace geo

@@ -37,9 +37,9 @@ using ClosestVertices = std::vector<std::pair<NodeId, SurfaceVertexId>>;
 ClosestVertices closest_after(const Body& body, const CrackDelta& delta, NodeId first_new,
                               const std::vector<NodeId>& moved);
 
-/// Updates body.binding after a step: equal to build_binding(), bit for bit, at a cost that follows
-/// the change. `closest`: of closest_after(); nodes may have been added since. Returns the surface
-/// vertices with another carrying node, ascending.
+/// Updates body.binding after a step. The result equals that of build_binding(), bit for bit, at a
+/// cost that follows the change. `closest`: of closest_after(). Nodes may have been added since.
+/// Returns the surface vertices with another carrying node, ascending.
 std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
                                     const std::vector<NodeId>& moved, ClosestVertices closest);
 

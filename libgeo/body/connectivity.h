@@ -66,8 +66,8 @@ struct FreshCut {
 
 /// § 6.4, passages too narrow for the sampling: adds edges, then nodes, until no piece is empty and
 /// all pairs are connected. Works in rounds of decreasing spacing; `update` is called once a round.
-/// Afterwards mismatch.representative has a node of each piece visited. `cut`: tells where a
-/// passage is, so that no nodes are added elsewhere; empty: passages may be anywhere.
+/// Afterwards mismatch.representative has a node of each piece visited. `cut`: nodes are added near
+/// its edges, if some of them joined the components. Else the passage may be anywhere.
 void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
                          const FreshCut& cut = {});
 

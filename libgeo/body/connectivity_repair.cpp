@@ -1,6 +1,6 @@
-// repair_connectivity() of body/connectivity.h: narrow passages, pieces without a node (§ 6.4). An
-// edge between components that see each other; else nodes at the passage's walls, or along a taut
-// path, which comes first where a cut has just parted many nodes (docs/decisions/032).
+// repair_connectivity() of body/connectivity.h: narrow passages, pieces without a node (§ 6.4).
+// Components that see each other get an edge. Else nodes are put at the passage's walls or along a
+// taut path. The path comes first where a cut has parted many nodes (docs/decisions/032).
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -77,11 +77,13 @@ class NearestInPiece {
         });
   }
 
- private:
+  /// piece_of() a node.
   std::int32_t piece_of_node(std::uint32_t i) {
     const auto [at, fresh] = piece_.try_emplace(i, 0);
     return fresh ? at->second = piece_of(body_, NodeId(i)) : at->second;
   }
+
+ private:
   const Body& body_;
   std::uint32_t count_;
   std::unordered_map<std::uint32_t, std::int32_t> piece_;
@@ -200,9 +202,9 @@ class ConnectivityRepair {
         mismatch_.representative.erase(piece), body_.cache->pieces_without_node.insert(piece);
     }
   }
-  // By an edge where two components see each other; else along a taut path, in later rounds or
-  // where a cut has parted many nodes; else by sampling the passage (first round: returns the faces
-  // to sample near).
+  // By an edge where two components see each other. Else along a taut path, in later rounds or
+  // where a cut has parted many nodes. Else by sampling the passage in the first round: returns the
+  // faces to sample near.
   std::vector<FaceId> connect_components(int round, double spacing) {
     Regions components = components_of(body_);
     NearestInPiece nearest(body_);
@@ -216,7 +218,7 @@ class ConnectivityRepair {
       auto component = components.inside(i.value);
       std::sort(component.begin(), component.end());
       if (join_by_visible_edge(body_, nearest, component, joins_)) continue;
-      const auto ends = ends_at_passage(component);
+      const auto ends = ends_at_passage(nearest, component);
       // A part with no more nodes than a node has edges needs more: it is thin, or small.
       const bool path_first = !ends.empty() && component.size() > static_cast<std::size_t>(body_.k);
       if ((round > 0 || path_first) && join_by_taut_path(nearest, i, component, ends, spacing)) continue;
@@ -231,19 +233,24 @@ class ConnectivityRepair {
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
   }
-  // The nodes of a component that lost an edge to the rest of its piece in this step: what is left
-  // of the passage is near them. None where no edge was cut, as in a build.
-  std::vector<std::uint32_t> ends_at_passage(const std::vector<std::uint32_t>& component) const {
+  // The nodes of a component that lost an edge to the rest of its piece in this step, those of
+  // short edges first: the rest of the passage is near them. None where no edge was cut, as in
+  // a build.
+  std::vector<std::uint32_t> ends_at_passage(NearestInPiece& nearest,
+                                             const std::vector<std::uint32_t>& component) const {
     const auto is_inside = [&](NodeId n) { return std::binary_search(component.begin(), component.end(), n.value); };
-    std::vector<std::uint32_t> ends;
+    std::vector<std::pair<double, std::uint32_t>> crossing;  // squared length, end inside
     for (const auto& [a, b] : cut_.edges)
-      if (is_inside(a) != is_inside(b) && piece_of(body_, a) == piece_of(body_, b))
-        ends.push_back((is_inside(a) ? a : b).value);
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+      if (is_inside(a) != is_inside(b) && nearest.piece_of_node(a.value) == nearest.piece_of_node(b.value))
+        crossing.emplace_back((body_.nodes.position[a.index()] - body_.nodes.position[b.index()]).squaredNorm(),
+                              (is_inside(a) ? a : b).value);
+    std::sort(crossing.begin(), crossing.end());
+    std::vector<std::uint32_t> ends;
+    for (const auto& [length, end] : crossing)
+      if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
     return ends;
   }
-  // Each pair of nodes is tried once, though later rounds search a little nearer to the surface: a
+  // Each pair of nodes is tried once, though later rounds search a little nearer to the surface. A
   // failed search takes longest, and few succeed at a second try. `ends`: of ends_at_passage().
   bool join_by_taut_path(NearestInPiece& nearest, NodeId i, const std::vector<std::uint32_t>& component,
                          std::span<const std::uint32_t> ends, double spacing) {

@@ -206,7 +206,7 @@ void Simulation::Impl::reset_environment() {
 void Simulation::Impl::hold_material(double time) { solid.hold(body, GrippedNodes::boxes(scene.grips, time)); }
 
 // Updates nodes and contact after a crack step. `plan`: of the surface, empty without self-contact.
-// Points and weights of the surface wait for the next time step, and points for fracture.
+// Weights of the surface wait for the next time step. So do points, unless cracks grow by stress.
 void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats) {
   if (delta.crack.empty()) return;
   Stopwatch watch;
@@ -258,7 +258,7 @@ std::optional<Simulation::Impl::FirstCut> Simulation::Impl::plan_first_cut(const
   const MovedBody moved = moved_body(step);
   FirstCut first{static_cast<std::size_t>(blade - scene.blades.begin()), 0, {}};
   first.cuts = begin_cuts(moved, first.blade);
-  if (first.cuts > 0) first.plan = plan_cut(moved, first.blade, 1, first.cuts);
+  first.plan = plan_cut(moved, first.blade, 1, first.cuts);
   return first;
 }
 
@@ -268,10 +268,7 @@ void Simulation::Impl::cut(const TimeStep& step, std::optional<FirstCut> first, 
   if (scene.blades.empty()) return;
   const MovedBody moved = moved_body(step);
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
-    if (!scene.blades[b].active(step.begin)) {
-      state.fronts[b].clear();
-      continue;
-    }
+    if (!scene.blades[b].active(step.begin)) continue;
     const bool is_planned = first && first->blade == b;
     Stopwatch watch;
     const int cuts = is_planned ? first->cuts : begin_cuts(moved, b);
@@ -460,8 +457,12 @@ void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   stats.mechanics_seconds += seconds_beside(
       stats.contact_seconds, [&] { update_points(); }, [&] { contact = begin_contact(step.dt, stats); });
   integrate(step, stats);
+  for (std::size_t b = 0; b < scene.blades.size(); ++b)
+    if (!scene.blades[b].active(step.begin)) state.fronts[b].clear();
   std::optional<FirstCut> first;
-  if (scene.implicit) {
+  if (scene.blades.empty()) {
+    finish_contact(std::move(contact), before, step.dt, stats);
+  } else if (scene.implicit) {
     // Contact reads the nodes, and so does the plan of a cut. Only a cut changes what both read.
     way = NodeWay(before, state.motion.displacement);
     stats.front_seconds += seconds_beside(

@@ -120,8 +120,9 @@ void bind_stats(py::module_& module) {
       .def_readonly("orphans", &geo::SplitStats::orphans, "Surface vertices that got another carrying node.")
       .def_readonly("repair_nodes", &geo::SplitStats::repair_nodes, "Of the new nodes, those in narrow passages.")
       .def_readonly("resample_seconds", &geo::SplitStats::resample_seconds, "Seconds of new nodes.")
-      .def_readonly("graph_seconds", &geo::SplitStats::graph_seconds, "Seconds of graph and neighbours.")
-      .def_readonly("binding_seconds", &geo::SplitStats::binding_seconds, "Seconds of the binding.");
+      .def_readonly("graph_seconds", &geo::SplitStats::graph_seconds,
+                    "Seconds of graph and neighbours, and of closest vertices beside them.")
+      .def_readonly("binding_seconds", &geo::SplitStats::binding_seconds, "Seconds of all else of the binding.");
 }
 
 void bind_delta(py::module_& module) {

@@ -262,8 +262,9 @@ void bind_frame_stats(py::module_& module) {
       .def_readonly("cg", &S::cg, "Iterations of conjugate gradients.")
       .def_readonly("steps", &S::steps, "Time steps.")
       .def_readonly("fracture_seconds", &S::fracture_seconds, "Stresses and plans, without the splits.")
-      .def_readonly("front_seconds", &S::front_seconds, "Mapping of blades into the material.")
-      .def_readonly("mechanics_seconds", &S::mechanics_seconds, "Mechanics.")
+      .def_readonly("front_seconds", &S::front_seconds,
+                    "Mapping of blades into the material, as far as it is not beside contact.")
+      .def_readonly("mechanics_seconds", &S::mechanics_seconds, "Mechanics, as far as it is not beside contact.")
       .def_readonly("contact_seconds", &S::contact_seconds, "Contact.")
       .def_property_readonly("split_seconds", &S::split_seconds, "All phases of cutting.")
       .def_readonly("energy", &S::energy, "Elastic energy at the frame's end, J.")

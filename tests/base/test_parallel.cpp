@@ -1,6 +1,8 @@
 // Parallel loops: each index once, serial scopes, exceptions.
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
@@ -82,6 +84,36 @@ TEST_CASE("a loop by threads of the standard library visits each index once", "[
                                             if (i == 50) throw std::runtime_error("no");
                                           }),
                   std::runtime_error);
+}
+
+TEST_CASE("an exception in one function of a pair leaves loops in the other one whole", "[parallel]") {
+  for (const int count : {1, 2, 4}) {
+    const Threads threads_set(count);
+    for (int run = 0; run < 50; ++run) {
+      std::vector<int> visits(1000, 0);
+      std::atomic<bool> has_begun{false};
+      const auto fails = [&] {
+        // Not for ever: one thread may call the functions in turn.
+        for (int i = 0; i < 10000 && !has_begun; ++i) std::this_thread::yield();
+        throw std::out_of_range("one");
+      };
+      const auto loops = [&] {
+        has_begun = true;
+        std::this_thread::sleep_for(std::chrono::microseconds(20));
+        parallel_for(visits.size(), 1, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) ++visits[i];
+        });
+      };
+      if (run % 2 == 0)
+        CHECK_THROWS_AS(parallel_invoke(fails, loops), std::out_of_range);
+      else
+        CHECK_THROWS_AS(parallel_invoke(loops, fails), std::out_of_range);
+      CHECK(std::count(visits.begin(), visits.end(), 1) == 1000);
+    }
+    // The first of two exceptions arrives.
+    CHECK_THROWS_AS(parallel_invoke([] { throw std::out_of_range("first"); }, [] { throw std::logic_error("second"); }),
+                    std::out_of_range);
+  }
 }
 
 TEST_CASE("both functions of a pair are called, and exceptions reach the caller", "[parallel]") {

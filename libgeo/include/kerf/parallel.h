@@ -30,7 +30,8 @@ class SerialScope {
 /// thread. Ranges of `grain` indices or fewer are not divided. Rethrows an exception of `body`.
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
-/// Calls both functions, in any order and from any thread. Rethrows an exception of either.
+/// Calls both functions, in any order and from any thread. Both run to their ends or exceptions;
+/// then the first one's exception is rethrown, else the second one's.
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
 
 }  // namespace geo

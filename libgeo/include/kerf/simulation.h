@@ -71,14 +71,16 @@ struct FrameStats {
   FractureStats fracture;
   ContactStats contact;
   SheetStats sheet;
-  std::size_t refused = 0;      ///< crack steps that could not be made
-  std::size_t fronts = 0;       ///< steps of blade fronts tried
-  std::size_t newton = 0;       ///< Newton iterations
-  std::size_t cg = 0;           ///< conjugate-gradient iterations
-  std::size_t steps = 0;        ///< time steps
-  double fracture_seconds = 0;  ///< stresses and plans, without the splits
-  double front_seconds = 0;     ///< mapping of blades into the material, as far as it is not beside contact
-  double mechanics_seconds = 0, contact_seconds = 0, write_seconds = 0;
+  std::size_t refused = 0;       ///< crack steps that could not be made
+  std::size_t fronts = 0;        ///< steps of blade fronts tried
+  std::size_t newton = 0;        ///< Newton iterations
+  std::size_t cg = 0;            ///< conjugate-gradient iterations
+  std::size_t steps = 0;         ///< time steps
+  double fracture_seconds = 0;   ///< stresses and plans, without the splits
+  double front_seconds = 0;      ///< mapping of blades into the material, as far as it is not beside contact
+  double mechanics_seconds = 0;  ///< after a cut, points of the solid count in the next frame, as far as they are not
+                                 ///< beside contact
+  double contact_seconds = 0, write_seconds = 0;
   double energy = 0;                  ///< elastic, J, at the frame's end
   std::vector<Vec3> blade_force;      ///< per blade: exerted by the material, N, mean over the frame
   std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
@@ -198,7 +200,8 @@ class Simulation {
   /// Motion, fronts and time.
   const RunState& state() const;
   /// The mechanics of the nodes: energy, stress, fields. After a cut, updates the solid's points
-  /// first, if the next frame has not yet.
+  /// first, if the next frame has not yet. So call it anew after each frame. Several threads may
+  /// call it, but not tasks of one parallel loop.
   const Solid& solid() const;
   /// The scene with all that was added, moved and changed, and with the values that hold now.
   const Scene& scene() const;

@@ -15,8 +15,8 @@
 namespace geo {
 namespace {
 
-// Larger: fewer copies of a node's slots, but longer node lists. A cut computes blocks anew as a
-// whole, and threads share them: small bodies have small ones, so that both are few cells.
+// Larger: fewer copies of a node's slots, but longer node lists. Small bodies have small blocks: a
+// cut computes few of them anew, and threads share them evenly.
 std::size_t cells_per_block(const Body& body) { return body.original_nodes < 1024 ? 64 : 256; }
 constexpr std::size_t none = ~std::size_t(0);
 
@@ -65,7 +65,8 @@ class Changes {
     for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
       ends.push_back(body.nodes.position[block.nodes[block.entry_node[q]]]);
     if (is_touched(p.position, ends)) return true;
-    // Another point sees all nodes that support it, and no other support has changed.
+    // A point that is neither occluded nor singular sees all nodes that support it, and no other
+    // support has changed.
     if (!p.occluded && p.quality != MomentQuality::singular) return false;
     std::vector<std::uint32_t> nodes;
     ends.clear();

@@ -13,8 +13,8 @@ namespace geo {
 class OccludingFaces {
  public:
   /// Makes this the set of the faces `ids`. Other living faces of earlier sets may stay in it. The
-  /// large tree is kept while most of its faces live and are needed. The cost is then a comparison
-  /// of each face, and a small tree over faces that are new.
+  /// large tree is kept while faces that went and new ones are at most a quarter of it. The cost is
+  /// then a comparison of each face, and a small tree over the new ones.
   void update(const Complex& surface, std::span<const FaceId> ids);
   /// Whether no face is in the set.
   bool empty() const { return known_.face.size() == removed_ && fresh_.face.empty(); }

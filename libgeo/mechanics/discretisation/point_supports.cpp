@@ -64,7 +64,7 @@ class NodeComponents {
   std::vector<std::uint32_t> size_;
 };
 
-// Supports of nodes, coordinate by coordinate, so that loops over them use vectors.
+// Supports of nodes, coordinate by coordinate: loops over them load no more than they need.
 class Balls {
  public:
   Balls(const Body& body, std::span<const std::uint32_t> nodes, double factor) : squared_radius_(nodes.size()) {

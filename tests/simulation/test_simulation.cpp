@@ -94,9 +94,12 @@ TEST_CASE("a falling cube is halved and both halves go on falling as one") {
 }
 
 TEST_CASE("a solid is up to date whenever it is asked for, and a run does not depend on that") {
-  const SceneOverrides none, plastic{{"material.yield", "0.01"}}, contact{{"contact.self", "true"}},
-      leapfrog{{"time.integrator", "leapfrog"}, {"time.step", "0.0005"}}, steps{{"time.step", "0.0125"}};
-  const SceneOverrides& overrides = GENERATE_COPY(none, plastic, contact, leapfrog, steps);
+  const SceneOverrides variants[] = {{},
+                                     {{"material.yield", "0.01"}},
+                                     {{"contact.self", "true"}},
+                                     {{"time.integrator", "leapfrog"}, {"time.step", "0.0005"}},
+                                     {{"time.step", "0.0125"}}};
+  const SceneOverrides overrides = variants[GENERATE(0, 1, 2, 3, 4)];
   const std::string second =
       "[[blade]]\npoints = [[-0.4, 0, 0], [1.4, 0, 0]]\ndivide = 6\nkeys = [[0.1, 0.013, 0.307, 1.3, 0, 0, 1, 2], "
       "[0.3, 0.013, 0.311, -0.7, 0, 0, 1, 3]]\n";

@@ -1,6 +1,6 @@
 // repair_connectivity() of body/connectivity.h: narrow passages, pieces without a node (§ 6.4).
-// Components that see each other get an edge. Else nodes are put at the passage's walls or along a
-// taut path. The path comes first where a cut has parted many nodes (docs/decisions/032).
+// Components that see each other get an edge. Else nodes are put at the passage's walls, then along
+// a taut path (docs/decisions/032).
 #include <algorithm>
 #include <deque>
 #include <set>
@@ -202,9 +202,8 @@ class ConnectivityRepair {
         mismatch_.representative.erase(piece), body_.cache->pieces_without_node.insert(piece);
     }
   }
-  // By an edge where two components see each other. Else along a taut path, in later rounds or
-  // where a cut has parted many nodes. Else by sampling the passage in the first round: returns the
-  // faces to sample near.
+  // By an edge where two components see each other. Else by sampling the passage in the first
+  // round, which returns the faces to sample near, and along a taut path in later ones.
   std::vector<FaceId> connect_components(int round, double spacing) {
     Regions components = components_of(body_);
     NearestInPiece nearest(body_);
@@ -219,9 +218,7 @@ class ConnectivityRepair {
       std::sort(component.begin(), component.end());
       if (join_by_visible_edge(body_, nearest, component, joins_)) continue;
       const auto ends = ends_at_passage(nearest, component);
-      // A part with no more nodes than a node has edges needs more: it is thin, or small.
-      const bool path_first = !ends.empty() && component.size() > static_cast<std::size_t>(body_.k);
-      if ((round > 0 || path_first) && join_by_taut_path(nearest, i, component, ends, spacing)) continue;
+      if (round > 0 && join_by_taut_path(nearest, i, component, ends, spacing)) continue;
       if (round == 0)
         for (const auto n : ends.empty() ? component : ends) {
           const Vec3& x = body_.nodes.position[n];

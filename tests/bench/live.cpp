@@ -173,12 +173,12 @@ double throttled_pace(const sim::Setup& s, double seconds) {
 }
 
 // Mean time of a frame that cuts over that of one that does not, in the same run. The frame after a
-// cut computes points that follow it: what it takes beyond the mean is the cut's.
+// cut counts as one: it computes the points that follow.
 double cut_ratio(const std::string& name, double seconds) {
   const sim::Setup s = scene(name, 60);
   live::Session session(s, {});
   const Strokes strokes(name, geo::bounding_box(s.models.all));
-  double cut = 0, plain = 0, after = 0, cuts = 0, plains = 0, afters = 0;
+  double cut = 0, plain = 0, cuts = 0, plains = 0;
   std::uint64_t last = ~std::uint64_t(0);
   live::Snapshot shown;
   session.show(shown);
@@ -198,12 +198,11 @@ double cut_ratio(const std::string& name, double seconds) {
     session.advance();
     const double time = seconds_since(start);
     const bool has_cut = session.has_cut();
-    (has_cut ? cut : follows ? after : plain) += time;
-    (has_cut ? cuts : follows ? afters : plains) += 1;
+    (has_cut || follows ? cut : plain) += time;
+    (has_cut || follows ? cuts : plains) += 1;
     follows = has_cut;
   }
-  const double mean = plain / std::max(1.0, plains);
-  return (cut + after - afters * mean) / std::max(1.0, cuts) / mean;
+  return (cut / std::max(1.0, cuts)) / (plain / std::max(1.0, plains));
 }
 
 }  // namespace

@@ -1,12 +1,13 @@
 // repair_connectivity() of body/connectivity.h: narrow passages, pieces without a node (§ 6.4).
-// Components that see each other get an edge. Else nodes are put at the passage's walls, then along
-// a taut path (docs/decisions/032).
+// Components that see each other get an edge. Else nodes are put at the passage's walls, if these
+// connect them, or along a taut path (docs/decisions/032).
 #include <algorithm>
 #include <deque>
 #include <set>
 #include <unordered_map>
 
 #include "base/random.h"
+#include "base/union_find.h"
 #include "body/binding.h"
 #include "body/connectivity.h"
 #include "body/locate.h"
@@ -179,11 +180,7 @@ class ConnectivityRepair {
       const NodeId first_new(body_.nodes.size());
       fill_empty_pieces();
       joins_.clear();
-      const auto faces = connect_components(round, scale * body_.cache->grid.cell());
-      // Limited, so that a passage that stays closed costs little.
-      insert_nodes_near(
-          body_, faces,
-          {.spacing = scale * body_.cache->grid.cell(), .seed = 0x6b657266u, .limit = 100, .fresh = cut_.faces});
+      connect_components(round, scale * body_.cache->grid.cell());
       if (first_new.index() < body_.nodes.size() || !joins_.empty())
         update_(first_new, joins_);
       else if (round >= 1)
@@ -202,12 +199,15 @@ class ConnectivityRepair {
         mismatch_.representative.erase(piece), body_.cache->pieces_without_node.insert(piece);
     }
   }
-  // By an edge where two components see each other. Else by sampling the passage in the first
-  // round, which returns the faces to sample near, and along a taut path in later ones.
-  std::vector<FaceId> connect_components(int round, double spacing) {
+  // By an edge where two components see each other. Else by nodes: at the walls of the passage in
+  // the first round, if they suffice, or along a taut path. Walls get nodes, too, where the passage
+  // may be anywhere, and where there is no path.
+  void connect_components(int round, double spacing) {
+    const NodeId first_new(body_.nodes.size());
+    if (round == 1) tried_.clear();  // the first round searched farther from the surface than the others
     Regions components = components_of(body_);
     NearestInPiece nearest(body_);
-    std::vector<FaceId> faces;
+    std::vector<FaceId> walls;
     std::set<std::uint32_t> handled;  // components, by their lowest nodes
     for (const auto& [a, b] : mismatch_.disconnected) {
       components.seed(a.value), components.seed(b.value);
@@ -218,17 +218,63 @@ class ConnectivityRepair {
       std::sort(component.begin(), component.end());
       if (join_by_visible_edge(body_, nearest, component, joins_)) continue;
       const auto ends = ends_at_passage(nearest, component);
-      if (round > 0 && join_by_taut_path(nearest, i, component, ends, spacing)) continue;
-      if (round == 0)
-        for (const auto n : ends.empty() ? component : ends) {
-          const Vec3& x = body_.nodes.position[n];
-          // Faces within 1.5 spacings of these nodes: walls of the passage.
-          body_.surface.faces_near(Box3{x, x}.grown(1.5 * body_.nodes.spacing[n]), faces);
-        }
+      const auto is_joined_by_path = [&] { return join_by_taut_path(nearest, i, component, ends, spacing); };
+      if (round > 0)
+        is_joined_by_path();
+      else if (ends.empty() || !(join_by_walls(first_new, component, ends, spacing) || is_joined_by_path()))
+        add_walls(ends.empty() ? component : ends, walls);
     }
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    return faces;
+    insert_nodes_at(std::move(walls), first_new, spacing);
+  }
+  // Adds the faces within 1.5 spacings of nodes: walls of a passage near them.
+  void add_walls(std::span<const std::uint32_t> nodes, std::vector<FaceId>& walls) const {
+    for (const auto n : nodes) {
+      const Vec3& x = body_.nodes.position[n];
+      body_.surface.faces_near(Box3{x, x}.grown(1.5 * body_.nodes.spacing[n]), walls);
+    }
+  }
+  // Inserts nodes at walls. Few in a round, so that a passage that stays closed costs little.
+  void insert_nodes_at(std::vector<FaceId> walls, NodeId first_of_round, double spacing) {
+    constexpr std::size_t most = 100;
+    const std::size_t inserted = body_.nodes.size() - first_of_round.index();
+    if (inserted >= most) return;
+    std::sort(walls.begin(), walls.end());
+    walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
+    insert_nodes_near(body_, walls,
+                      {.spacing = spacing, .seed = 0x6b657266u, .limit = most - inserted, .fresh = cut_.faces});
+  }
+  // Inserts nodes at the walls near the ends of cut edges. False, and no nodes, if they would not
+  // connect the component to another one: they would make steps slower and serve nothing.
+  bool join_by_walls(NodeId first_of_round, const std::vector<std::uint32_t>& component,
+                     std::span<const std::uint32_t> ends, double spacing) {
+    const NodeId first_new(body_.nodes.size());
+    std::vector<FaceId> walls;
+    add_walls(ends, walls);
+    insert_nodes_at(std::move(walls), first_of_round, spacing);
+    if (is_connected_by(first_new, component)) return true;
+    remove_nodes(body_, first_new);
+    return false;
+  }
+  // Whether nodes from `first_new` on connect a component to another one by lines of sight.
+  bool is_connected_by(NodeId first_new, const std::vector<std::uint32_t>& component) const {
+    constexpr std::size_t candidates = 24;                     // neighbours of a node; as many as at a crack
+    constexpr std::uint32_t inside = 0, outside = 1, own = 2;  // the component, other old nodes, each new one
+    const auto set_of = [&](std::uint32_t i) {
+      if (i >= first_new.value) return own + i - first_new.value;
+      return std::binary_search(component.begin(), component.end(), i) ? inside : outside;
+    };
+    const double reach = longest_reach(body_);
+    UnionFind sets(own + body_.nodes.size() - first_new.index());
+    const auto& position = body_.nodes.position;
+    for (std::uint32_t i = first_new.value; i < body_.nodes.size(); ++i)
+      for (const auto j : body_.cache->grid.nearest(position, position[i], candidates, i, [](auto) { return true; })) {
+        if (sets.find(set_of(i)) == sets.find(set_of(j)) || (position[i] - position[j]).norm() > reach ||
+            is_blocked(body_.surface, position[j], position[i]))
+          continue;
+        sets.unite(set_of(i), set_of(j));
+        if (sets.find(inside) == sets.find(outside)) return true;
+      }
+    return false;
   }
   // The nodes of a component that lost an edge to the rest of its piece in this step, those of
   // short edges first: the rest of the passage is near them. None where no edge was cut, as in
@@ -247,8 +293,9 @@ class ConnectivityRepair {
       if (std::find(ends.begin(), ends.end(), end) == ends.end()) ends.push_back(end);
     return ends;
   }
-  // Each pair of nodes is tried once, though later rounds search a little nearer to the surface. A
-  // failed search takes longest, and few succeed at a second try. `ends`: of ends_at_passage().
+  // Each pair of nodes is tried once after the first round, though later ones search nearer to the
+  // surface. A failed search takes longest, and few succeed at another try. `ends`: of
+  // ends_at_passage().
   bool join_by_taut_path(NearestInPiece& nearest, NodeId i, const std::vector<std::uint32_t>& component,
                          std::span<const std::uint32_t> ends, double spacing) {
     std::vector<std::uint32_t> starts(ends.begin(),

@@ -65,6 +65,16 @@ NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing, std:
   return id;
 }
 
+void remove_nodes(Body& body, NodeId first) {
+  NodeSet& nodes = body.nodes;
+  for (std::uint32_t i = std::uint32_t(nodes.size()); i-- > first.value;) {
+    nodes.volume[body.cache->donors.back().index()] += nodes.volume[i];
+    body.cache->grid.erase(i, nodes.position[i]);
+    nodes.position.pop_back(), nodes.spacing.pop_back(), nodes.radius.pop_back(), nodes.volume.pop_back();
+    body.debris.pop_back(), body.cache->donors.pop_back();
+  }
+}
+
 namespace {
 
 // The wanted spacing of new nodes at a crack: half of the spacing of the nearest original node to

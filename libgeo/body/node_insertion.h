@@ -21,6 +21,10 @@ void set_original_nodes(Body& body, std::uint32_t count);
 /// id.
 NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers = {});
 
+/// Removes the nodes from `first` on, which the step inserted last, and returns their volume to
+/// their donors. Precondition: donors alone gave it, and no edge leads to these nodes yet.
+void remove_nodes(Body& body, NodeId first);
+
 /// Options of insert_nodes_near().
 struct InsertionOptions {
   double spacing = 0;                   ///< wanted distance between nodes, model units. 0: half of the spacing of the

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "kerf/body.h"
@@ -32,15 +33,33 @@ NodeId carrier_of_unseen_shell(const Body& body, SurfaceVertexId v, const std::f
 /// Nodes, ascending, and the closest surface vertex of each, as closest_vertex() finds it.
 using ClosestVertices = std::vector<std::pair<NodeId, SurfaceVertexId>>;
 
-/// Those of all nodes whose closest vertex may have changed in a step, nodes from `first_new` on
-/// included. Needs no graph. `moved`: old nodes with another position or support radius, ascending.
-ClosestVertices closest_after(const Body& body, const CrackDelta& delta, NodeId first_new,
-                              const std::vector<NodeId>& moved);
+/// Those of all nodes whose closest vertex may have changed by the new faces of a step. Reads
+/// longest_reach() of the graph alone, which no step changes.
+ClosestVertices closest_after(const Body& body, const CrackDelta& delta);
 
 /// Updates body.binding after a step. The result equals that of build_binding(), bit for bit, at a
-/// cost that follows the change. `closest`: of closest_after(). Nodes may have been added since.
-/// Returns the surface vertices with another carrying node, ascending.
-std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
-                                    const std::vector<NodeId>& moved, ClosestVertices closest);
+/// cost that follows the change.
+class BindingUpdate {
+ public:
+  /// Refers to the body.
+  explicit BindingUpdate(Body& body);
+  ~BindingUpdate();
+  BindingUpdate(const BindingUpdate&) = delete;
+  BindingUpdate& operator=(const BindingUpdate&) = delete;
+
+  /// The first part: masters and slaves of the shells that nodes see. Reads no labels of pieces,
+  /// and longest_reach() of the graph alone. `first_new`: the first node that the step has added.
+  /// `moved`: old nodes with another position or support radius, ascending. `closest`: of
+  /// closest_after(), before nodes moved.
+  void follow_step(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
+                   ClosestVertices closest);
+  /// The second part, with labels of pieces that are up to date: masters of nodes added since, and
+  /// of unseen shells. Returns the surface vertices with another carrying node, ascending.
+  std::vector<SurfaceVertexId> finish();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace geo

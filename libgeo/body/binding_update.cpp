@@ -1,5 +1,5 @@
-// rebind() of body/binding.h. § 6.5 after a step: closest vertices of nodes near the change, then
-// the trees that lost or found a root.
+// BindingUpdate of body/binding.h. § 6.5 after a step: closest vertices of nodes near the change,
+// then the trees that lost or found a root.
 #include <algorithm>
 #include <numbers>
 #include <queue>
@@ -18,9 +18,11 @@ namespace {
 
 constexpr std::uint32_t no_depth = ~0u, none = ~0u;
 
-class Rebinding {
+}  // namespace
+
+class BindingUpdate::Impl {
  public:
-  explicit Rebinding(Body& body)
+  explicit Impl(Body& body)
       : body_(body),
         k_(body.surface),
         b_(body.binding),
@@ -29,19 +31,40 @@ class Rebinding {
     const std::size_t n = k_.surface_vertex_count();
     b_.master_node.resize(n), b_.master.resize(n), b_.parent.resize(n);
     depth_.resize(n, no_depth);
-    b_.closest.resize(body.nodes.size());
   }
 
-  void update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
-                      ClosestVertices closest);
-  void update_unseen_masters(NodeId first_new, const std::vector<NodeId>& moved);
+  void follow_step(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
+                   ClosestVertices closest) {
+    first_new_ = first_new, moved_ = moved;
+    std::erase_if(closest, [&](const auto& c) { return std::binary_search(moved.begin(), moved.end(), c.first); });
+    update_closest_of(added_nodes()), update_closest_of(moved), update_closest(closest);
+    for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
+    update_masters();
+    update_trees_at_changed_edges(delta);
+    grow();
+  }
+  std::vector<SurfaceVertexId> finish() {
+    update_closest_of(added_nodes());
+    update_unseen_masters();
+    update_masters();
+    offer_to_orphans();
+    grow();
+    adopt_unseen_shells();
+    return rebound();
+  }
+
+ private:
+  std::vector<NodeId> added_nodes() const;
+  void update_closest(const ClosestVertices& closest);
+  void update_closest_of(const std::vector<NodeId>& nodes);
+  void update_unseen_masters();
   void update_masters();
   void update_trees_at_changed_edges(const CrackDelta& delta);
+  void offer_to_orphans();
   void grow();
   void adopt_unseen_shells();
   std::vector<SurfaceVertexId> rebound();
 
- private:
   using Candidate = std::tuple<std::uint32_t, SurfaceVertexId, SurfaceVertexId>;  // depth, parent, vertex
 
   std::vector<SurfaceVertexId> around(SurfaceVertexId v) const {
@@ -79,19 +102,32 @@ class Rebinding {
   Binding& b_;
   std::vector<std::uint32_t>& depth_;
   std::vector<SurfaceVertexId>& unseen_masters_;
+  NodeId first_new_;
+  std::vector<NodeId> moved_;
   std::set<SurfaceVertexId> retargeted_;  // vertices that became or ceased to be the closest of a node
-  std::vector<SurfaceVertexId> orphans_;
+  std::vector<SurfaceVertexId> orphans_;  // some have a parent again
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   std::unordered_map<SurfaceVertexId, NodeId> node_before_, carrier_before_;
 };
+
+namespace {
+
+ClosestVertices closest_vertices(const Body& body, std::span<const std::uint32_t> nodes) {
+  ClosestVertices result(nodes.size());
+  parallel_for(nodes.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      result[s] = {NodeId(nodes[s]),
+                   closest_vertex(body.surface, body.nodes.position[nodes[s]], body.nodes.radius[nodes[s]])};
+  });
+  return result;
+}
 
 }  // namespace
 
 // A node's closest vertex v depends on faces within 1.05 |v − x|, since visible_fan() tests points
 // up to a twentieth farther. 1.06 covers rounding, too. Without a closest vertex, the node depends
 // on all faces within 1.06 support radii.
-ClosestVertices closest_after(const Body& body, const CrackDelta& delta, NodeId first_new,
-                              const std::vector<NodeId>& moved) {
+ClosestVertices closest_after(const Body& body, const CrackDelta& delta) {
   const Complex& k = body.surface;
   const auto& x = body.nodes.position;
   const double reach = longest_reach(body);
@@ -103,9 +139,7 @@ ClosestVertices closest_after(const Body& body, const CrackDelta& delta, NodeId 
       [&](int, const Vec3& middle, double half) {
         return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).triangle != none;
       },
-      [&](int, std::uint32_t i) {
-        if (i < first_new.value) stale.push_back(i);
-      });
+      [&](int, std::uint32_t i) { stale.push_back(i); });
   parallel_for(stale.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const auto i = stale[s];
@@ -116,40 +150,38 @@ ClosestVertices closest_after(const Body& body, const CrackDelta& delta, NodeId 
     }
   });
   std::erase(stale, none);
-  for (std::uint32_t i = first_new.value; i < x.size(); ++i) stale.push_back(i);
-  for (const NodeId i : moved) stale.push_back(i.value);
   std::sort(stale.begin(), stale.end());
-  stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
-  ClosestVertices result(stale.size());
-  parallel_for(stale.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s)
-      result[s] = {NodeId(stale[s]), closest_vertex(k, x[stale[s]], body.nodes.radius[stale[s]])};
-  });
-  return result;
+  return closest_vertices(body, stale);
 }
 
-namespace {
+// The nodes that `closest` has no entry for yet.
+std::vector<NodeId> BindingUpdate::Impl::added_nodes() const {
+  std::vector<NodeId> added;
+  for (auto i = static_cast<std::uint32_t>(b_.closest.size()); i < body_.nodes.size(); ++i) added.push_back(NodeId(i));
+  return added;
+}
 
-// `closest`: of nodes near the change. Nodes that were added since follow.
-void Rebinding::update_closest(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
-                               ClosestVertices closest) {
-  const auto known = closest.empty() ? first_new.value : std::max(first_new.value, closest.back().first.value + 1);
-  for (std::uint32_t i = known; i < body_.nodes.size(); ++i)
-    closest.push_back({NodeId(i), closest_vertex(k_, body_.nodes.position[i], body_.nodes.radius[i])});
+void BindingUpdate::Impl::update_closest(const ClosestVertices& closest) {
+  b_.closest.resize(body_.nodes.size());
   for (const auto& [node, now] : closest) {
     auto& before = b_.closest[node.index()];
-    const bool elsewhere = node >= first_new || std::binary_search(moved.begin(), moved.end(), node);
+    const bool elsewhere = node >= first_new_ || std::binary_search(moved_.begin(), moved_.end(), node);
     if (before == now && !elsewhere) continue;
     for (const auto v : {before, now})
       if (v.valid()) retargeted_.insert(v);
     before = now;
   }
-  for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
+}
+
+void BindingUpdate::Impl::update_closest_of(const std::vector<NodeId>& nodes) {
+  std::vector<std::uint32_t> ids;
+  for (const NodeId i : nodes) ids.push_back(i.value);
+  update_closest(closest_vertices(body_, ids));
 }
 
 // The node that carries an unseen shell v changes in three cases: it moved, it is in another piece
 // now, or a new or moved node is at most as far from v.
-void Rebinding::update_unseen_masters(NodeId first_new, const std::vector<NodeId>& moved) {
+void BindingUpdate::Impl::update_unseen_masters() {
   const auto before = unseen_masters_;
   for (const auto v : before) {
     bool stays = k_.alive(v);
@@ -158,23 +190,23 @@ void Rebinding::update_unseen_masters(NodeId first_new, const std::vector<NodeId
       const Vec3& q = k_.point(k_.site(v));
       const double d = (body_.nodes.position[node.index()] - q).squaredNorm();
       const auto rivals = [&](NodeId i) { return (body_.nodes.position[i.index()] - q).squaredNorm() <= d; };
-      stays = !std::binary_search(moved.begin(), moved.end(), node) &&
-              std::none_of(moved.begin(), moved.end(), rivals) &&
+      stays = !std::binary_search(moved_.begin(), moved_.end(), node) &&
+              std::none_of(moved_.begin(), moved_.end(), rivals) &&
               (body_.cache->pieces_without_node.count(body_.cache->piece[v.index()]) ||
                piece_of(body_, node) == body_.cache->piece[v.index()]);
-      for (std::uint32_t i = first_new.value; i < body_.nodes.size() && stays; ++i) stays = !rivals(NodeId(i));
+      for (std::uint32_t i = first_new_.value; i < body_.nodes.size() && stays; ++i) stays = !rivals(NodeId(i));
     }
     if (!stays) dismiss_unseen_master(v);
   }
 }
 
-void Rebinding::dismiss_unseen_master(SurfaceVertexId v) {
+void BindingUpdate::Impl::dismiss_unseen_master(SurfaceVertexId v) {
   set_node(v, NodeId());
   unseen_masters_.erase(std::lower_bound(unseen_masters_.begin(), unseen_masters_.end(), v));
   orphan(v);
 }
 
-void Rebinding::update_masters() {
+void BindingUpdate::Impl::update_masters() {
   const std::vector<SurfaceVertexId> vertices(retargeted_.begin(), retargeted_.end());
   std::vector<NodeId> nodes(vertices.size());
   parallel_for(vertices.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -192,11 +224,12 @@ void Rebinding::update_masters() {
     else if (node.valid() && !before.valid())
       offer(v, 0, v);
   }
+  retargeted_.clear();
 }
 
 // The whole subtree loses its master. Vertices that are no longer beside their parents are found
 // one by one.
-void Rebinding::orphan(SurfaceVertexId root) {
+void BindingUpdate::Impl::orphan(SurfaceVertexId root) {
   std::vector<SurfaceVertexId> tree{root};
   while (!tree.empty()) {
     const auto v = tree.back();
@@ -213,7 +246,7 @@ void Rebinding::orphan(SurfaceVertexId root) {
 }
 
 // Edges of the surface come and go only at vertices of the delta.
-void Rebinding::update_trees_at_changed_edges(const CrackDelta& delta) {
+void BindingUpdate::Impl::update_trees_at_changed_edges(const CrackDelta& delta) {
   auto at = delta.touched_surface_vertices;
   at.insert(at.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
   std::vector<SurfaceVertexId> seen = at;
@@ -239,9 +272,20 @@ void Rebinding::update_trees_at_changed_edges(const CrackDelta& delta) {
     }
 }
 
+// Neighbours of orphans may become their parents.
+void BindingUpdate::Impl::offer_to_orphans() {
+  std::sort(orphans_.begin(), orphans_.end());
+  orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
+  for (const auto v : orphans_) {
+    if (!k_.alive(v) || depth_[v.index()] != no_depth) continue;
+    for (const auto w : around(v))
+      if (depth_[w.index()] != no_depth) offer(v, depth_[w.index()] + 1, w);
+  }
+}
+
 // Dijkstra's algorithm on (depth, parent): orphans get the least depth and, among equals, the
 // lowest parent. Then masters are passed down the trees whose roots changed.
-void Rebinding::grow() {
+void BindingUpdate::Impl::grow() {
   std::priority_queue<std::pair<std::uint32_t, SurfaceVertexId>, std::vector<std::pair<std::uint32_t, SurfaceVertexId>>,
                       std::greater<>>
       changed;
@@ -265,7 +309,7 @@ void Rebinding::grow() {
 }
 
 // Shells that no master reached, the lowest vertex of each first.
-void Rebinding::adopt_unseen_shells() {
+void BindingUpdate::Impl::adopt_unseen_shells() {
   for (const auto v : orphans_) {
     if (!k_.alive(v) || depth_[v.index()] != no_depth) continue;
     const auto piece = body_.cache->piece[v.index()];
@@ -283,7 +327,7 @@ void Rebinding::adopt_unseen_shells() {
   }
 }
 
-std::vector<SurfaceVertexId> Rebinding::rebound() {
+std::vector<SurfaceVertexId> BindingUpdate::Impl::rebound() {
   // Whole trees whose root has another carrying node.
   for (const auto& [root, node] : node_before_) {
     if (!k_.alive(root) || b_.master[root.index()] != root || b_.master_node[root.index()] == node) continue;
@@ -305,18 +349,14 @@ std::vector<SurfaceVertexId> Rebinding::rebound() {
   return out;
 }
 
-}  // namespace
+BindingUpdate::BindingUpdate(Body& body) : impl_(std::make_unique<Impl>(body)) {}
+BindingUpdate::~BindingUpdate() = default;
 
-std::vector<SurfaceVertexId> rebind(Body& body, const CrackDelta& delta, NodeId first_new,
-                                    const std::vector<NodeId>& moved, ClosestVertices closest) {
-  Rebinding r(body);
-  r.update_closest(delta, first_new, moved, std::move(closest));
-  r.update_unseen_masters(first_new, moved);
-  r.update_masters();
-  r.update_trees_at_changed_edges(delta);
-  r.grow();
-  r.adopt_unseen_shells();
-  return r.rebound();
+void BindingUpdate::follow_step(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
+                                ClosestVertices closest) {
+  impl_->follow_step(delta, first_new, moved, std::move(closest));
 }
+
+std::vector<SurfaceVertexId> BindingUpdate::finish() { return impl_->finish(); }
 
 }  // namespace geo

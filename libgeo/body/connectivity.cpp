@@ -36,7 +36,8 @@ void record_empty_piece(std::int32_t piece, SurfaceVertexId v, ConnectivityMisma
 }
 
 // Does a piece hold a node? `vertices`: some of its surface. Tests carrying nodes of `vertices`,
-// then carrying nodes of the rest of the shell, then all nodes in the shell's box.
+// then carrying nodes of the rest of the shell, then all nodes in the shell's box. Where shells
+// bound a piece from inside, nodes are beyond that box: the nearest ones are tested last.
 bool holds_node(const Body& body, std::int32_t piece, const std::vector<SurfaceVertexId>& vertices) {
   const Binding& b = body.binding;
   std::set<NodeId> tested;
@@ -66,7 +67,10 @@ bool holds_node(const Body& body, std::int32_t piece, const std::vector<SurfaceV
       [&](int, std::uint32_t i) {
         found = found || (box.meets(Box3{body.nodes.position[i], body.nodes.position[i]}) && inside(NodeId(i)));
       });
-  return found;
+  if (found || !body.cache->inner_shells) return found;
+  const Vec3& x = body.surface.point(body.surface.site(vertices[0]));
+  return !body.cache->grid.nearest(body.nodes.position, x, 1, ~0u, [&](std::uint32_t i) { return inside(NodeId(i)); })
+              .empty();
 }
 
 // A face's children are rounded, so that the only node of a thin piece may end up outside of it

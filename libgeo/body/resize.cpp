@@ -42,8 +42,9 @@ BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> ra
                             .updated_nodes;
   mark_debris(body, delta.updated_nodes);
   // The radius bounds the search for the closest vertex.
-  delta.rebound_vertices =
-      rebind(body, {}, delta.first_new_node, resized, closest_after(body, {}, delta.first_new_node, resized));
+  BindingUpdate binding(body);
+  binding.follow_step({}, delta.first_new_node, resized, {});
+  delta.rebound_vertices = binding.finish();
   return delta;
 }
 

@@ -39,8 +39,13 @@ std::vector<std::array<Vec3, 3>> changed_triangles(const Complex& surface, const
 // Steps 4 to 7 for a body whose complex has taken a step already.
 class BodyUpdater {
  public:
-  BodyUpdater(Body& body, CrackDelta crack, const Progress& progress)
-      : body_(body), progress_(progress), near_(triangles_near(body.surface)) {
+  /// `closest`: of closest_after().
+  BodyUpdater(Body& body, CrackDelta crack, ClosestVertices closest, const Progress& progress)
+      : body_(body),
+        progress_(progress),
+        near_(triangles_near(body.surface)),
+        binding_(body),
+        closest_(std::move(closest)) {
     delta.crack = std::move(crack);
     delta.first_new_node = NodeId(body.nodes.size());
     body.cache->donors.clear();
@@ -67,17 +72,20 @@ class BodyUpdater {
                                 body_.graph, progress_);
     updated_.insert(graph_update.updated_nodes.begin(), graph_update.updated_nodes.end());
   }
+  /// Labels of pieces, and the first part of step 7. Both need no graph.
+  void follow_surface() {
+    pieces_ = update_piece_labels(body_, delta.crack, relabelled_);
+    binding_.follow_step(delta.crack, delta.first_new_node, delta.moved_nodes, std::move(closest_));
+  }
   /// Gives each detached piece nodes, connected among themselves: G has one component for each
   /// piece.
   void match_graph_to_pieces() {
-    bool relabelled = false;
-    const auto pieces = update_piece_labels(body_, delta.crack, relabelled);
     std::vector<std::uint32_t> component;
-    if (relabelled) body_.graph.components(component);
-    auto mismatch = relabelled ? find_mismatch(body_, component)
-                               : find_mismatch(body_, graph_update.cut_edges, pieces,
-                                               delta.crack.touched_surface_vertices, delta.first_new_node);
-    note_parts(body_, pieces, mismatch);
+    if (relabelled_) body_.graph.components(component);
+    auto mismatch = relabelled_ ? find_mismatch(body_, component)
+                                : find_mismatch(body_, graph_update.cut_edges, pieces_,
+                                                delta.crack.touched_surface_vertices, delta.first_new_node);
+    note_parts(body_, pieces_, mismatch);
     first_repair_node_ = body_.nodes.size();
     const auto update = [&](NodeId first_new, std::span<const NodePair> joins) {
       const auto more = update_graph({.nodes = body_.nodes,
@@ -90,18 +98,14 @@ class BodyUpdater {
       updated_.insert(more.updated_nodes.begin(), more.updated_nodes.end());
     };
     repair_connectivity(body_, mismatch, update, {delta.crack.new_crack_faces, graph_update.cut_edges});
-    delta.detached = detached_nodes(body_, pieces, mismatch);
+    delta.detached = detached_nodes(body_, pieces_, mismatch);
     delta.updated_nodes.assign(updated_.begin(), updated_.end());
     mark_debris(body_, delta.updated_nodes);
-  }
-  /// The first part of step 7, which needs no graph.
-  void find_closest_vertices() {
-    closest_ = closest_after(body_, delta.crack, delta.first_new_node, delta.moved_nodes);
   }
   /// Step 7: masters and slaves of surface vertices (§ 6.5).
   void rebind_vertices() {
     report(progress_, "binding", 0, delta.crack.new_faces.size());
-    delta.rebound_vertices = rebind(body_, delta.crack, delta.first_new_node, delta.moved_nodes, std::move(closest_));
+    delta.rebound_vertices = binding_.finish();
     delta.donors = body_.cache->donors;
     ++body_.crack_steps;
   }
@@ -121,17 +125,21 @@ class BodyUpdater {
   const Progress& progress_;
   const TrianglesNear near_;
   std::set<NodeId> updated_;  // P_update of all updates
+  BindingUpdate binding_;
   ClosestVertices closest_;
+  std::vector<DetachedPiece> pieces_;
+  bool relabelled_ = false;
   std::size_t first_repair_node_ = 0;
 };
 
-BodyDelta update_after_crack(Body& body, CrackDelta crack, SplitStats* stats, const Progress& progress = {}) {
+BodyDelta update_after_crack(Body& body, CrackDelta crack, ClosestVertices closest, SplitStats* stats,
+                             const Progress& progress = {}) {
   auto clock = std::chrono::steady_clock::now();
-  BodyUpdater updater(body, std::move(crack), progress);
+  BodyUpdater updater(body, std::move(crack), std::move(closest), progress);
   if (updater.delta.crack.empty()) return std::move(updater.delta);
   updater.resample();
   const double resample = seconds_since(clock);
-  parallel_invoke([&] { updater.update_graph_and_neighbors(); }, [&] { updater.find_closest_vertices(); });
+  parallel_invoke([&] { updater.update_graph_and_neighbors(); }, [&] { updater.follow_surface(); });
   updater.match_graph_to_pieces();
   const double graph = seconds_since(clock);
   updater.rebind_vertices();
@@ -152,25 +160,49 @@ BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, co
 
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
                 SplitStats* stats, const StepVeto& veto) {
+  return finish_split(body, front, begin_split(body, front, next, options, stats), stats, veto);
+}
+
+BegunSplit begin_split(Body& body, const FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
+                       SplitStats* stats) {
   prepare_cache(body);
-  FrontState moved = front;
-  CrackDelta crack = advance(body.surface, moved, next, options, stats ? &stats->crack : nullptr);
-  if (veto && !crack.empty()) {
-    try {
-      veto(body.surface, crack);
-    } catch (...) {
-      body.surface.undo();
-      throw;
-    }
+  BegunSplit begun{front, {}};
+  begun.crack = advance(body.surface, begun.front, next, options, stats ? &stats->crack : nullptr);
+  return begun;
+}
+
+void undo_split(Body& body, const BegunSplit& begun) {
+  if (!begun.crack.empty()) body.surface.undo();
+}
+
+BodyDelta finish_split(Body& body, FrontState& front, BegunSplit begun, SplitStats* stats, const StepVeto& veto) {
+  auto clock = std::chrono::steady_clock::now();
+  double veto_seconds = 0;
+  const auto find_closest = [&] {
+    if (!begun.closest) begun.closest = closest_after(body, begun.crack);
+  };
+  const auto ask = [&] {
+    auto own = std::chrono::steady_clock::now();
+    if (veto && !begun.crack.empty()) veto(body.surface, begun.crack);
+    veto_seconds = seconds_since(own);
+  };
+  try {
+    parallel_invoke(find_closest, ask);  // both read the body, and the veto decides whether it changes
+  } catch (...) {
+    undo_split(body, begun);
+    throw;
   }
-  front = std::move(moved);
-  return update_after_crack(body, std::move(crack), stats);
+  if (stats) stats->binding_seconds += std::max(0.0, seconds_since(clock) - veto_seconds);
+  front = std::move(begun.front);
+  return update_after_crack(body, std::move(begun.crack), std::move(*begun.closest), stats);
 }
 
 BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats, const Progress& progress) {
   report(progress, "surface", 0, 1);
   prepare_cache(body);
-  return update_after_crack(body, body.surface.apply(body.surface.difference(surface)), stats, progress);
+  CrackDelta crack = body.surface.apply(body.surface.difference(surface));
+  ClosestVertices closest = closest_after(body, crack);
+  return update_after_crack(body, std::move(crack), std::move(closest), stats, progress);
 }
 
 }  // namespace geo

@@ -45,7 +45,7 @@ MovingSurface initial_surface(const Body& body, const Solid& solid, const Surfac
                               std::vector<Vec3> positions) {
   ContactSurface topology = contact_surface(body.surface);
   if (positions.size() != topology.site.size())
-    positions = surface_targets(body, weights, std::vector<Vec3>(solid.size(), Vec3::Zero()));
+    positions = surface_targets(weights, std::vector<Vec3>(solid.size(), Vec3::Zero()));
   return {std::move(topology), std::move(positions)};
 }
 
@@ -67,8 +67,8 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
                                     const Vec3& gravity, const std::vector<std::uint8_t>& fixed) {
   update_weights(body, solid);
   const FreeMotion free = free_motion(body, solid, state, dt, gravity, fixed);
-  const std::vector<Vec3>& targets = targets_at(body, state.displacement);
-  const std::vector<Vec3> free_targets = surface_targets(body, weights_, free.displacement),
+  const std::vector<Vec3>& targets = targets_at(state.displacement);
+  const std::vector<Vec3> free_targets = surface_targets(weights_, free.displacement),
                           mean_targets = surface_.coincidence().averaged(targets);
   ContactStep step;
   step.revision = revision_;
@@ -88,14 +88,13 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
   return step;
 }
 
-ContactStats SelfContact::finish_step(ContactStep step, const Body& body, const Solid& solid,
-                                      const std::vector<Vec3>& displacement) {
+ContactStats SelfContact::finish_step(ContactStep step, const Solid& solid, const std::vector<Vec3>& displacement) {
   if (!step.penalty) throw std::logic_error("the contact step was finished before");
   if (step.revision != revision_) throw std::logic_error("the surface has changed since the contact step began");
   Stopwatch clock;
   const std::size_t touching = step.penalty->pressing();
   take_rotations(solid);
-  ContactStats stats = move_surface(body, displacement, &step.tracking_error);
+  ContactStats stats = move_surface(displacement, &step.tracking_error);
   stats.touching = touching;
   spare_penalty_ = std::move(step.penalty);
   stats.seconds = clock.lap();
@@ -109,9 +108,9 @@ ContactStats SelfContact::finish_step_with_impulses(const Body& body, const Soli
   update_weights(body, solid);
   take_rotations(solid);
   const std::size_t touching =
-      resolve_with_impulses({body, solid, weights_, before, dt, fixed},
+      resolve_with_impulses({solid, weights_, before, dt, fixed},
                             {gap(), options_.friction, options_.recovery, options_.rounds}, surface_, near_, state);
-  ContactStats stats = move_surface(body, state.displacement, nullptr);
+  ContactStats stats = move_surface(state.displacement, nullptr);
   stats.touching = touching;
   stats.seconds = clock.lap();
   return stats;
@@ -123,10 +122,9 @@ void SelfContact::take_rotations(const Solid& solid) {
 
 // Opens sheets, then moves all vertices towards their targets at displacements u. `tracking_error`:
 // of the step's beginning; null: not known.
-ContactStats SelfContact::move_surface(const Body& body, const std::vector<Vec3>& u,
-                                       const std::vector<Vec3>* tracking_error) {
+ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error) {
   ContactStats stats;
-  const std::vector<Vec3>& targets = targets_at(body, u);
+  const std::vector<Vec3>& targets = targets_at(u);
   std::vector<Vec3> opened = positions();
   stats.opened = open_sheets(surface(), surface_.fans(), surface_.coincidence().coincident, targets, gap(),
                              options_.opening * surface().edge, opened);
@@ -142,8 +140,7 @@ ContactStats SelfContact::move_surface(const Body& body, const std::vector<Vec3>
   ++revision_, near_.invalidate();
   stats.planes = bounded.planes, stats.in_zones = bounded.in_zones, stats.held = bounded.held;
   for (std::size_t v = 0; v < targets.size(); ++v)
-    if (body.surface.alive(SurfaceVertexId(v)))
-      stats.tracking_error = std::max(stats.tracking_error, (positions()[v] - targets[v]).norm());
+    if (weights_.alive(v)) stats.tracking_error = std::max(stats.tracking_error, (positions()[v] - targets[v]).norm());
   return stats;
 }
 

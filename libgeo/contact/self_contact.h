@@ -54,10 +54,9 @@ class SelfContact {
   ContactStep begin_step(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
                          const std::vector<std::uint8_t>& fixed);
   /// Moves the surface after the nodes' implicit step, which has ended at `displacement`, per node.
-  /// Throws std::logic_error when the surface has changed since `step` began, or `step` was
-  /// finished.
-  ContactStats finish_step(ContactStep step, const Body& body, const Solid& solid,
-                           const std::vector<Vec3>& displacement);
+  /// Reads nothing of the body, whose next crack may begin meanwhile. Throws std::logic_error when
+  /// the surface has changed since `step` began, or `step` was finished.
+  ContactStats finish_step(ContactStep step, const Solid& solid, const std::vector<Vec3>& displacement);
   /// Moves the surface after a step of the nodes in which no contact acted: corrects displacements
   /// and velocities by impulses first. The step began at displacements `before` and took dt
   /// seconds.
@@ -83,9 +82,7 @@ class SelfContact {
   const std::vector<Vec3>& positions() const { return surface_.positions(); }
   /// Positions that Eq. 1 gives, per surface vertex, at displacements u of the nodes; valid until
   /// the next call of a method that is not const. Precondition: update_weights().
-  const std::vector<Vec3>& targets_at(const Body& body, const std::vector<Vec3>& u) {
-    return targets_.at(body, weights_, u);
-  }
+  const std::vector<Vec3>& targets_at(const std::vector<Vec3>& u) { return targets_.at(weights_, u); }
   /// Eq. 1 as weights of nodes, after update_weights().
   const SurfaceWeights& weights() const { return weights_; }
   /// Triangles and sites.
@@ -96,7 +93,7 @@ class SelfContact {
  private:
   void take_rotations(const Solid& solid);
   double gap() const { return options_.gap * surface().edge; }
-  ContactStats move_surface(const Body& body, const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error);
+  ContactStats move_surface(const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error);
 
   ContactOptions options_;
   SurfaceWeights weights_;

@@ -35,7 +35,7 @@ ContactStats Collisions::finish_step(std::optional<ContactStep> step, const Body
                                      const std::vector<Vec3>& before, double dt, const Environment& environment,
                                      State& motion) {
   if (!surface_) return {};
-  return step ? surface_->finish_step(std::move(*step), body, solid, motion.displacement)
+  return step ? surface_->finish_step(std::move(*step), solid, motion.displacement)
               : surface_->finish_step_with_impulses(body, solid, before, dt, environment.fixed, motion);
 }
 

@@ -51,8 +51,8 @@ class Collisions {
   const SurfaceWeights* weights() const { return surface_ ? &surface_->weights() : nullptr; }
   /// Targets of surface vertices (Eq. 1), after update_weights(). Valid until the next call of a
   /// method that is not const; empty without self-contact.
-  std::span<const Vec3> targets(const Body& body, const State& motion) {
-    return surface_ ? std::span<const Vec3>(surface_->targets_at(body, motion.displacement)) : std::span<const Vec3>();
+  std::span<const Vec3> targets(const State& motion) {
+    return surface_ ? std::span<const Vec3>(surface_->targets_at(motion.displacement)) : std::span<const Vec3>();
   }
 
  private:

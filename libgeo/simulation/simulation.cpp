@@ -85,6 +85,8 @@ struct Simulation::Impl {
     std::vector<double> spacing;  // of the nodes there, model units
     double deviation = 0;         // see sheet_deviation()
     std::size_t retreating = 0;   // points of `to` that hold_retreating() held
+    bool is_begun = false;
+    std::optional<BegunSplit> split;  // once begun; none: it is refused
   };
   // A cut by a blade: its runs in the material, and the advance of each.
   struct PlannedCut {
@@ -107,7 +109,8 @@ struct Simulation::Impl {
   void apply_changes(double time);
   void step(const TimeStep& step, FrameStats& stats);
   MovedBody moved_body(const TimeStep& step) const { return {body, solid, state.motion, way, step.begin, step.end}; }
-  std::optional<FirstCut> plan_first_cut(const TimeStep& step);
+  void begin_first_cut(const TimeStep& step, std::optional<FirstCut>& first, FrameStats& stats);
+  void undo(const std::optional<FirstCut>& first);
   void cut(const TimeStep& step, std::optional<FirstCut> first, FrameStats& stats);
   std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction);
   int begin_cuts(const MovedBody& moved, std::size_t blade);
@@ -115,7 +118,10 @@ struct Simulation::Impl {
   void make_cut(std::size_t blade, PlannedCut plan, FrameStats& stats);
   Advance advance_of(const EdgeFront& front, std::span<const EdgePoint> run, const MapAt& half, const Blade& blade,
                      const FrontAnchor& anchor) const;
+  void begin(Advance& advance, FrameStats& stats);
   std::optional<std::vector<FaceId>> split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
+  std::optional<BegunSplit> begin_step(const FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
+  std::optional<std::vector<FaceId>> finish_step(FrontState& front, BegunSplit begun, FrameStats& stats);
   void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
   void update_points();
   std::int32_t unused_crack() const;
@@ -235,13 +241,31 @@ void Simulation::Impl::update_points() {
 // One step of a crack. Returns its new faces; nothing, and counts it, where it cannot be made.
 std::optional<std::vector<FaceId>> Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& next,
                                                                 FrameStats& stats) {
+  std::optional<BegunSplit> begun = begin_step(front, next, stats);
+  return begun ? finish_step(front, std::move(*begun), stats) : std::nullopt;
+}
+
+// The first part of split_step(): that of split().
+std::optional<BegunSplit> Simulation::Impl::begin_step(const FrontState& front, const std::vector<Vec3>& next,
+                                                       FrameStats& stats) {
   CrackOptions options;
   options.seed = scene.seed;
+  try {
+    return begin_split(body, front, next, options, &stats.split);
+  } catch (const GeometryError&) {
+    ++stats.refused;
+    return {};
+  }
+}
+
+// The second part.
+std::optional<std::vector<FaceId>> Simulation::Impl::finish_step(FrontState& front, BegunSplit begun,
+                                                                 FrameStats& stats) {
   try {
     std::optional<EmbeddingPlan> plan;
     const StepVeto check =
         collisions ? collisions->embedding_check(body, solid, state.motion, plan, stats.contact_seconds) : StepVeto();
-    const BodyDelta delta = split(body, front, next, options, &stats.split, check);
+    const BodyDelta delta = finish_split(body, front, std::move(begun), &stats.split, check);
     apply_delta(delta, std::move(plan), stats);
     return delta.crack.new_crack_faces;
   } catch (const GeometryError&) {
@@ -250,30 +274,43 @@ std::optional<std::vector<FaceId>> Simulation::Impl::split_step(FrontState& fron
   }
 }
 
-// Plans the first cut of a time step that the nodes have made. Precondition: `way`.
-std::optional<Simulation::Impl::FirstCut> Simulation::Impl::plan_first_cut(const TimeStep& step) {
+// Plans the first cut of a time step that the nodes have made, and begins its first crack: changes
+// the fronts of its blade and the body's complex. `first`: none where no blade is active.
+// Precondition: `way`.
+void Simulation::Impl::begin_first_cut(const TimeStep& step, std::optional<FirstCut>& first, FrameStats& stats) {
   const auto is_active = [&](const Blade& blade) { return blade.active(step.begin); };
   const auto blade = std::find_if(scene.blades.begin(), scene.blades.end(), is_active);
-  if (blade == scene.blades.end()) return {};
+  if (blade == scene.blades.end()) return;
   const MovedBody moved = moved_body(step);
-  FirstCut first{static_cast<std::size_t>(blade - scene.blades.begin()), 0, {}};
-  first.cuts = begin_cuts(moved, first.blade);
-  first.plan = plan_cut(moved, first.blade, 1, first.cuts);
-  return first;
+  first = FirstCut{static_cast<std::size_t>(blade - scene.blades.begin()), 0, {}};
+  first->cuts = begin_cuts(moved, first->blade);
+  first->plan = plan_cut(moved, first->blade, 1, first->cuts);
+  if (first->plan.advances.empty()) return;
+  Advance& advance = first->plan.advances[0];
+  begin(advance, stats);
+  Stopwatch watch;
+  if (advance.split) advance.split->closest = closest_after(body, advance.split->crack);
+  stats.split.binding_seconds += watch.lap();
+}
+
+// Takes back what begin_first_cut() has begun.
+void Simulation::Impl::undo(const std::optional<FirstCut>& first) {
+  if (first && !first->plan.advances.empty() && first->plan.advances[0].split)
+    undo_split(body, *first->plan.advances[0].split);
 }
 
 // Moves all blades through the time step that the nodes have just made. `first`: the first cut, if
-// it is planned. Precondition: `way`.
+// it has begun. Precondition: `way`.
 void Simulation::Impl::cut(const TimeStep& step, std::optional<FirstCut> first, FrameStats& stats) {
   if (scene.blades.empty()) return;
   const MovedBody moved = moved_body(step);
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     if (!scene.blades[b].active(step.begin)) continue;
-    const bool is_planned = first && first->blade == b;
+    const bool has_begun = first && first->blade == b;
     Stopwatch watch;
-    const int cuts = is_planned ? first->cuts : begin_cuts(moved, b);
+    const int cuts = has_begun ? first->cuts : begin_cuts(moved, b);
     for (int k = 1; k <= cuts; ++k) {
-      PlannedCut plan = is_planned && k == 1 ? std::move(first->plan) : plan_cut(moved, b, k, cuts);
+      PlannedCut plan = has_begun && k == 1 ? std::move(first->plan) : plan_cut(moved, b, k, cuts);
       stats.front_seconds += watch.lap();
       make_cut(b, std::move(plan), stats);
       watch.lap();
@@ -329,19 +366,26 @@ Simulation::Impl::PlannedCut Simulation::Impl::plan_cut(const MovedBody& moved, 
   return plan;
 }
 
+// Begins the crack of an advance.
+void Simulation::Impl::begin(Advance& advance, FrameStats& stats) {
+  advance.split = begin_step(advance.edge.front, advance.to, stats), advance.is_begun = true;
+}
+
 // Advances the fronts of a blade.
 void Simulation::Impl::make_cut(std::size_t b, PlannedCut plan, FrameStats& stats) {
   for (std::size_t r = 0; r < plan.runs.size(); ++r) {
-    auto& [edge, to, spacing, deviation, retreating] = plan.advances[r];
-    stats.sheet.retreating += retreating;
+    Advance& advance = plan.advances[r];
+    stats.sheet.retreating += advance.retreating;
     ++stats.fronts;
-    const auto faces = split_step(edge.front, to, stats);
+    if (!advance.is_begun) begin(advance, stats);
+    if (!advance.split) continue;
+    const auto faces = finish_step(advance.edge.front, std::move(*advance.split), stats);
     if (!faces) continue;
     Stopwatch watch;
-    collapse(edge, plan.runs[r]);
-    state.fronts[b][r] = std::move(edge);
-    stats.sheet.deviation = std::max(stats.sheet.deviation, deviation);
-    const double lowest = 0.1 * *std::min_element(spacing.begin(), spacing.end());
+    collapse(advance.edge, plan.runs[r]);
+    state.fronts[b][r] = std::move(advance.edge);
+    stats.sheet.deviation = std::max(stats.sheet.deviation, advance.deviation);
+    const double lowest = 0.1 * *std::min_element(advance.spacing.begin(), advance.spacing.end());
     stats.sheet.turning = std::max(stats.sheet.turning, sheet_turning(body.surface, *faces, lowest));
     stats.front_seconds += watch.lap();
   }
@@ -390,8 +434,7 @@ void Simulation::Impl::add_wedges() {
 std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
   collisions->update_weights(body, solid);
-  const std::span<const Vec3> surface =
-      obstacles.any() ? collisions->targets(body, state.motion) : std::span<const Vec3>();
+  const std::span<const Vec3> surface = obstacles.any() ? collisions->targets(state.motion) : std::span<const Vec3>();
   obstacles.add_potentials(
       {scene, body, solid, collisions->weights(), surface, state.body_index, state.motion, state.time, dt},
       environment);
@@ -463,11 +506,18 @@ void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   if (scene.blades.empty()) {
     finish_contact(std::move(contact), before, step.dt, stats);
   } else if (scene.implicit) {
-    // Contact reads the nodes, and so does the plan of a cut. Only a cut changes what both read.
+    // Contact reads the nodes alone, which a crack that begins does not change.
     way = NodeWay(before, state.motion.displacement);
-    stats.front_seconds += seconds_beside(
-        stats.contact_seconds, [&] { first = plan_first_cut(step); },
-        [&] { finish_contact(std::move(contact), before, step.dt, stats); });
+    try {
+      const double before_split = stats.split_seconds();
+      const double beside = seconds_beside(
+          stats.contact_seconds, [&] { begin_first_cut(step, first, stats); },
+          [&] { finish_contact(std::move(contact), before, step.dt, stats); });
+      stats.front_seconds += std::max(0.0, beside - (stats.split_seconds() - before_split));
+    } catch (...) {
+      undo(first);
+      throw;
+    }
   } else {
     finish_contact(std::move(contact), before, step.dt, stats);
     way = NodeWay(before, state.motion.displacement);

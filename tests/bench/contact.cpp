@@ -71,7 +71,7 @@ int contact(const Options& options) {
       start = cpu_seconds();
       solid.step_implicit(state, 1.0 / 24, environment);
       moving += cpu_seconds() - start, start = cpu_seconds();
-      work += surface.finish_step(std::move(contact), body, solid, state.displacement);
+      work += surface.finish_step(std::move(contact), solid, state.displacement);
       one += cpu_seconds() - start;
       touching += one, worst = std::max(worst, one);
     }

@@ -93,15 +93,16 @@ TEST_CASE("A cut through nodes moves them off", "[body]") {
   CHECK(check_body(body).first_problem == "");
 }
 
-TEST_CASE("A thin ligament that a cut leaves gets nodes, all of them near it", "[body]") {
+TEST_CASE("A thin ligament that a cut leaves gets few nodes, all of them near it", "[body]") {
   const auto [first, count] = seeds(30);
-  std::size_t repaired = 0;
+  std::size_t repaired = 0, by_path = 0;
   for (int n = 0; n < count; ++n) {
     const std::uint64_t seed = first + static_cast<std::uint64_t>(n);
     INFO("seed " << seed);
     Random random(seed);
     const double spacing = 0.2;
     Body body = make_body(make_block({1, 1, 4}, 0.2), spacing);
+    const double volume = std::accumulate(body.nodes.volume.begin(), body.nodes.volume.end(), 0.0);
     // A cut in two steps, across the block but for a strip along one side.
     const double z = random.uniform(1.8, 2.2), tilt = random.uniform(-0.1, 0.1), left = random.uniform(0.005, 0.06);
     const auto edge = [&](double y) {
@@ -115,13 +116,39 @@ TEST_CASE("A thin ligament that a cut leaves gets nodes, all of them near it", "
     split(body, front, edge(1 - left), {}, &stats);
     CHECK(check_body(body).first_problem == "");
     CHECK(find_pieces(body.surface).count == 1);
-    repaired += stats.repair_nodes > 0;
+    repaired += stats.repair_nodes > 0, by_path += stats.repair_nodes > 0 && stats.repair_nodes <= 3;
+    CHECK(std::accumulate(body.nodes.volume.begin(), body.nodes.volume.end(), 0.0) == Approx(volume));
+    CHECK(body.cache->grid.size() == body.nodes.size());
     // Ends of cut edges are within a support radius of the cut, and walls 1.5 spacings farther.
     // Half of the body is ten spacings long.
     for (std::size_t i = body.nodes.size() - stats.repair_nodes; i < body.nodes.size(); ++i)
       CHECK(std::abs(body.nodes.position[i].z() - z) < 6 * spacing);
   }
   CHECK(repaired > 0);
+  CHECK(by_path > 0);
+}
+
+TEST_CASE("A small crack that grows inside the material needs no repair of the graph", "[body]") {
+  const auto [first, count] = seeds(20);
+  std::size_t unseen = 0;
+  for (int n = 0; n < count; ++n) {
+    const std::uint64_t seed = first + static_cast<std::uint64_t>(n);
+    INFO("seed " << seed);
+    Random random(seed);
+    Body body = make_body(make_block({1, 1, 1}, 0.1), 0.25);
+    const double length = 0.004;
+    const Vec3 at(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.02, 0.06));
+    const Vec3 along = length * random.direction(), ahead = length * along.cross(random.direction()).normalized();
+    auto front = begin_front(std::vector<Vec3>{at, at + along}, false, 1);
+    for (int k = 1; k <= 3; ++k) {
+      SplitStats stats;
+      split(body, front, {Vec3(at + k * ahead), Vec3(at + along + k * ahead)}, {}, &stats);
+      CHECK(stats.repair_nodes == 0);
+      unseen += body.cache->unseen_masters.size();
+    }
+    CHECK(check_body(body).first_problem == "");
+  }
+  CHECK(unseen > 0);
 }
 
 TEST_CASE("Following a surface that was cut elsewhere keeps the invariants", "[body]") {

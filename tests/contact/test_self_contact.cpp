@@ -64,7 +64,7 @@ struct CutBlock {
     if (Potential* potential = step.potential()) environment.contact.push_back(potential);
     solid.step_implicit(state, dt, environment);
     environment.contact.clear();
-    return contact.finish_step(std::move(step), body, solid, state.displacement);
+    return contact.finish_step(std::move(step), solid, state.displacement);
   }
 };
 
@@ -138,7 +138,7 @@ TEST_CASE("steps and plans that no longer fit the surface are refused") {
     return block.contact.begin_step(block.body, block.solid, block.state, 0.02, {0, 0, 0}, {});
   };
   const auto finish = [&](ContactStep step) {
-    return block.contact.finish_step(std::move(step), block.body, block.solid, block.state.displacement);
+    return block.contact.finish_step(std::move(step), block.solid, block.state.displacement);
   };
   SECTION("a step that was finished") {
     ContactStep step = begin();

@@ -238,7 +238,7 @@ class SurfaceEmbedder {
       const NodeId node = carrying_node(v);
       for (const Carrier& c : carriers)
         if (c.node == node) return c;
-      Carrier& c = carriers.emplace_back(Carrier{node, with_neighbors(node), {}});
+      Carrier& c = carriers.emplace_back(Carrier{node, with_neighbors(node), Vec3::Zero()});
       c.at_site = displacement(x, c.nodes);
       return c;
     };
@@ -247,7 +247,7 @@ class SurfaceEmbedder {
     double total = 0, nearest = std::numeric_limits<double>::infinity();
     for (const VisiblePoint& p : visible.points) {
       const Carrier& carrier = carrier_of(p.reference);
-      const double weight = std::pow(p.distance / visible.reach, -4);
+      const double share = p.distance / visible.reach, weight = 1 / (share * share * share * share);
       sum += weight * (p.now + x - p.rest + carrier.at_site - displacement(p.rest, carrier.nodes)), total += weight;
       if (p.distance < nearest) nearest = p.distance, reference = p.reference;
     }

@@ -28,8 +28,7 @@ class ImpulseResponse {
   std::size_t respond(const std::vector<Vec3>& u, const ConstraintOptions& constraint, double friction,
                       std::vector<Vec3>& velocity) {
     const auto& [representative, coincident] = surface_.coincidence();
-    const std::vector<Vec3> to = surface_targets(step_.body, step_.weights, u),
-                            goal = surface_.coincidence().averaged(to);
+    const std::vector<Vec3> to = surface_targets(step_.weights, u), goal = surface_.coincidence().averaged(to);
     const SurfaceMotion motion{
         surface_.topology().triangles, representative, surface_.positions(), goal, gap_, 2 * gap_};
     if (candidates_.empty()) candidates_ = find_contact_candidates(motion, near_);

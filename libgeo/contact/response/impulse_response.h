@@ -13,7 +13,6 @@ namespace geo {
 
 /// A finished step of the nodes. Refers to everything.
 struct StepWithoutContact {
-  const Body& body;
   const Solid& solid;
   const SurfaceWeights& weights;
   const std::vector<Vec3>& before;         ///< displacements per node when the step began

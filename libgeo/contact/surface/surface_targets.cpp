@@ -8,21 +8,19 @@
 
 namespace geo {
 
-std::vector<Vec3> surface_targets(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u) {
+std::vector<Vec3> surface_targets(const SurfaceWeights& weights, const std::vector<Vec3>& u) {
   constexpr std::size_t vertices_per_task = 1024;
   std::vector<std::uint32_t> all(weights.size());
   std::iota(all.begin(), all.end(), 0u);
   std::vector<Vec3> result = weights.interpolate(all, u);
   parallel_for(result.size(), vertices_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      if (const SurfaceVertexId id(v); body.surface.alive(id))
-        result[v] = body.surface.point(body.surface.site(id)) + (result[v] + weights.rotated(v));
+      if (weights.alive(v)) result[v] = weights.rest(v) + (result[v] + weights.rotated(v));
   });
   return result;
 }
 
-const std::vector<Vec3>& SurfaceTargetCache::at(const Body& body, const SurfaceWeights& weights,
-                                                const std::vector<Vec3>& u) {
+const std::vector<Vec3>& SurfaceTargetCache::at(const SurfaceWeights& weights, const std::vector<Vec3>& u) {
   // A crack step appends nodes; vertices with unchanged weights do not depend on those.
   const bool unmoved = !displacement_.empty() && displacement_.size() <= u.size() &&
                        std::equal(displacement_.begin(), displacement_.end(), u.begin());
@@ -30,14 +28,11 @@ const std::vector<Vec3>& SurfaceTargetCache::at(const Body& body, const SurfaceW
     targets_.resize(weights.size(), Vec3::Zero());
     const auto offsets = weights.interpolate(stale_, u);
     for (std::size_t i = 0; i < offsets.size(); ++i) {
-      const SurfaceVertexId v(stale_[i]);
-      targets_[v.index()] =
-          body.surface.alive(v)
-              ? Vec3(body.surface.point(body.surface.site(v)) + (offsets[i] + weights.rotated(v.index())))
-              : Vec3(Vec3::Zero());
+      const auto v = stale_[i];
+      targets_[v] = weights.alive(v) ? Vec3(weights.rest(v) + (offsets[i] + weights.rotated(v))) : Vec3(Vec3::Zero());
     }
   } else {
-    targets_ = surface_targets(body, weights, u);
+    targets_ = surface_targets(weights, u);
   }
   displacement_ = u, stale_.clear();
   return targets_;

@@ -5,19 +5,18 @@
 #include <vector>
 
 #include "contact/surface/surface_weights.h"
-#include "kerf/body.h"
 
 namespace geo {
 
 /// Per surface vertex its target, world; zero for dead vertices. `u`: per node.
-std::vector<Vec3> surface_targets(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u);
+std::vector<Vec3> surface_targets(const SurfaceWeights& weights, const std::vector<Vec3>& u);
 
 /// Remembers the targets of the last displacements. After a crack step at the same displacements
 /// only targets of vertices with changed weights are computed. Not thread-safe.
 class SurfaceTargetCache {
  public:
   /// The same as surface_targets(); valid until the next call.
-  const std::vector<Vec3>& at(const Body& body, const SurfaceWeights& weights, const std::vector<Vec3>& u);
+  const std::vector<Vec3>& at(const SurfaceWeights& weights, const std::vector<Vec3>& u);
   /// These vertices are new or have other weights.
   void invalidate(std::span<const std::uint32_t> vertices) {
     stale_.insert(stale_.end(), vertices.begin(), vertices.end());

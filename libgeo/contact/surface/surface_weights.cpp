@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <numeric>
 
 #include "contact/surface/contact_surface.h"
@@ -26,18 +27,18 @@ class StencilSums {
       std::fill(used_.begin(), used_.end(), 0), std::fill(weight_.begin(), weight_.end(), 0.0);
     start();
   }
-  void add(NodeId j, double w) {
-    const std::size_t word = j.index() / 64;
-    const std::uint64_t bit = std::uint64_t(1) << j.index() % 64;
+  void add(std::uint32_t j, double w) {
+    const std::size_t word = j / 64;
     low_ = std::min(low_, word), high_ = std::max(high_, word);
-    size_ += (used_[word] & bit) == 0;
-    used_[word] |= bit;
-    weight_[j.index()] += w;
+    used_[word] |= std::uint64_t(1) << j % 64;
+    weight_[j] += w;
   }
   // Writes the sums to an empty stencil, by ascending nodes, without zeros, and starts the next
   // one.
   void move_to(std::vector<NodeWeight>& stencil) {
-    stencil.reserve(size_);
+    std::size_t size = 0;
+    for (auto word = low_; word <= high_; ++word) size += static_cast<std::size_t>(std::popcount(used_[word]));
+    stencil.reserve(size);
     for (auto word = low_; word <= high_; ++word)
       for (auto& bits = used_[word]; bits != 0; bits &= bits - 1) {
         const auto j = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(bits)));
@@ -48,17 +49,17 @@ class StencilSums {
   }
 
  private:
-  void start() { low_ = used_.size(), high_ = 0, size_ = 0; }
+  void start() { low_ = used_.size(), high_ = 0; }
 
-  std::vector<double> weight_;                 // per node
-  std::vector<std::uint64_t> used_;            // one bit a node
-  std::size_t low_ = 0, high_ = 0, size_ = 0;  // range of words in use; nodes in use
+  std::vector<double> weight_;       // per node
+  std::vector<std::uint64_t> used_;  // one bit a node
+  std::size_t low_ = 0, high_ = 0;   // range of words in use
 };
 
 }  // namespace
 
 void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
-  stencils_.clear(), heaviest_.clear(), norm_.clear(), area_.clear(), arms_.clear(), changed_.clear();
+  stencils_.clear(), heaviest_.clear(), rest_.clear(), norm_.clear(), area_.clear(), arms_.clear(), changed_.clear();
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
   compute(body, solid, all);
@@ -75,7 +76,9 @@ void SurfaceWeights::mark_changed(const Body& body, const BodyDelta& delta) {
   const std::size_t n = body.surface.surface_vertex_count();
   changed_.resize(n, 0);
   for (const auto v : delta.rebound_vertices) changed_[v.index()] = 1;
-  for (const auto* some : {&delta.crack.new_surface_vertices, &delta.crack.touched_surface_vertices})
+  const CrackDelta& crack = delta.crack;
+  for (const auto* some :
+       {&crack.new_surface_vertices, &crack.touched_surface_vertices, &crack.removed_surface_vertices})
     for (const auto v : *some) changed_[v.index()] = 1;
   parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -117,37 +120,36 @@ std::vector<Vec3> SurfaceWeights::interpolate(std::span<const std::uint32_t> ver
 }
 
 void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
+  const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   stencils_.resize(body.surface.surface_vertex_count());
   heaviest_.resize(stencils_.size(), ~0u), norm_.resize(stencils_.size(), 0), area_.resize(stencils_.size(), 0);
-  arms_.resize(stencils_.size());
+  arms_.resize(stencils_.size()), rest_.resize(stencils_.size(), none);
   const NodalGradientOperator& mls = solid.discretisation().mls;
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
-    std::vector<std::pair<NodeId, Vec3>> gradient;
     thread_local StencilSums sums;  // as large as all nodes, for a range of few vertices
     sums.resize(solid.size());
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
       auto& stencil = stencils_[v];
-      stencil.clear(), heaviest_[v] = ~0u, norm_[v] = area_[v] = 0, arms_[v].clear();
+      stencil.clear(), heaviest_[v] = ~0u, norm_[v] = area_[v] = 0, arms_[v].clear(), rest_[v] = none;
       if (!body.surface.alive(id)) continue;
+      const Vec3& x = rest_[v] = body.surface.point(body.surface.site(id));
       area_[v] = vertex_area(body.surface, id);
       carrier_nodes(body, id, bound);
       if (bound.empty()) continue;
-      const Vec3& x = body.surface.point(body.surface.site(id));
       // Kernel weights replace distances. If all vanish, the first node carries the vertex.
       double total = 0;
       for (auto& [i, d] : bound) total += d = kernel(d / body.nodes.radius[i.index()], 1.0);
       if (!(total > 0)) bound.resize(1), bound[0].second = total = 1;
       for (const auto& [i, w] : bound) {
-        sums.add(i, w / total);
-        if (mls.quality(i.index()) != MomentQuality::good)
-          arms_[v].push_back({i.value, w / total * (x - body.nodes.position[i.index()])});
+        const NodalGradientOperator::Node& node = mls[i.index()];
+        const Vec3 arm = w / total * (x - body.nodes.position[i.index()]);
+        sums.add(i.value, w / total + node.own_gradient.dot(arm));
+        if (node.quality != MomentQuality::good) arms_[v].push_back({i.value, arm});
         if (w == 0) continue;
-        gradient.clear();
-        solid.gradient_stencil(i, gradient);
-        for (const auto& [j, g] : gradient) sums.add(j, w / total * g.dot(x - body.nodes.position[i.index()]));
+        for (std::size_t q = 0; q < node.neighbors.size(); ++q) sums.add(node.neighbors[q], node.gradient[q].dot(arm));
       }
       sums.move_to(stencil);
       const auto heaviest = std::max_element(stencil.begin(), stencil.end(),

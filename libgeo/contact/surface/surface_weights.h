@@ -1,6 +1,7 @@
 // Equation 1 as a sparse linear map: displacements of surface vertices from those of nodes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,6 +37,10 @@ class SurfaceWeights {
   std::size_t size() const { return stencils_.size(); }
   /// The stencil of surface vertex v; empty if v is dead or no node carries it.
   Stencil stencil(std::size_t v) const { return stencils_[v]; }
+  /// Whether surface vertex v is alive.
+  bool alive(std::size_t v) const { return !std::isnan(rest_[v][0]); }
+  /// The position of surface vertex v at rest. Precondition: it is alive.
+  const Vec3& rest(std::size_t v) const { return rest_[v]; }
   /// vertex_area() of surface vertex v, model units².
   double area(std::size_t v) const { return area_[v]; }
   /// weight_norm() of the stencil of surface vertex v.
@@ -59,6 +64,7 @@ class SurfaceWeights {
 
   std::vector<std::vector<Entry>> stencils_;
   std::vector<std::uint32_t> heaviest_;
+  std::vector<Vec3> rest_;  // per vertex; not a number: dead
   std::vector<double> area_, norm_;
   std::vector<std::vector<Arm>> arms_;  // per vertex: to its nodes without a full gradient
   std::vector<Vec3> rotated_;           // per vertex; empty: zero

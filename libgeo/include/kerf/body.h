@@ -93,8 +93,8 @@ struct SplitStats {
   std::size_t orphans = 0;        ///< surface vertices that got another carrying node
   std::size_t repair_nodes = 0;   ///< of the added nodes, the last: in pieces without a node and in narrow passages
   double resample_seconds = 0;    ///< new nodes
-  double graph_seconds = 0;       ///< graph and neighbours, and closest vertices beside them
-  double binding_seconds = 0;     ///< all else of the binding
+  double graph_seconds = 0;       ///< graph and neighbours, and most of the binding beside them
+  double binding_seconds = 0;     ///< the rest of the binding
 };
 
 /// Changes of a body by a split, for the mechanics. All lists are ascending.

@@ -76,9 +76,9 @@ class Changes {
     if (is_touched(p.position, ends)) return true;
     if (!p.occluded) return false;
     forget_settled(block, point, nodes);
-    const VisibilityChanges::NearBalls balls = visibility_.balls_near(p.position, near);
+    const VisibilityChanges::NearFaces faces = visibility_.seen_from(p.position, near);
     return std::any_of(nodes.begin(), nodes.end(), [&](auto j) {
-      return balls.meet_bent_paths(body.nodes.position[j], factor * body.nodes.radius[j]);
+      return faces.meet_bent_paths(body.nodes.position[j], factor * body.nodes.radius[j]);
     });
   }
 
@@ -157,6 +157,7 @@ struct BlockUpdate {
   std::vector<MaterialPoint> points;  // empty if nothing has changed
   std::vector<PointBlock::Source> sources;
   std::vector<std::uint32_t> stale;    // points to recompute
+  std::vector<char> keeps_position;    // per stale point: 1 if it is where it is intended, as before
   std::vector<ShapeGradients> shapes;  // of these
 
   BlockUpdate() = default;
@@ -196,17 +197,28 @@ struct BlockUpdate {
       const auto nodes_near = [&]() -> const std::vector<std::uint32_t>& {
         return nodes ? *nodes : nodes.emplace(supporting_nodes(body, bounds.box, bounds.factor, largest_node));
       };
-      for (std::uint32_t k = 0; k < group.size(); ++k)
-        if (const auto& [block, point, shape] = group[k];
-            !block || (!local.empty() &&
-                       changes.affect(body, local, cells[(begin + k) / 4].point[k % 4], *block, point, nodes_near)))
-          stale.push_back(begin + k);
+      for (std::uint32_t k = 0; k < group.size(); ++k) {
+        const auto& [block, point, shape] = group[k];
+        const Vec3& intended = cells[(begin + k) / 4].point[k % 4];
+        if (block && (local.empty() || !changes.affect(body, local, intended, *block, point, nodes_near))) continue;
+        stale.push_back(begin + k);
+        // A point on a face sees no node, and may leave the face now.
+        keeps_position.push_back(block && block->points[point].position == intended &&
+                                 block->entry_begin[point] != block->entry_begin[point + 1] &&
+                                 !changes.visibility().may_touch(intended, local.faces));
+      }
     }
     if (same_block != none && stale.empty()) return;
     points.resize(sources.size()), shapes.resize(stale.size());
     for (std::size_t i = 0; i < sources.size(); ++i)
       if (sources[i].block) points[i] = sources[i].block->points[sources[i].point];
-    for (const auto i : stale) set_position(body, cells[i / 4].point[i % 4], points[i]);
+    for (std::size_t s = 0; s < stale.size(); ++s) {
+      const auto i = stale[s];
+      if (keeps_position[s])
+        points[i].influence_radius = 0;
+      else
+        set_position(body, cells[i / 4].point[i % 4], points[i]);
+    }
   }
 
   // The new block, after compute_supports() of the stale points.
@@ -266,6 +278,7 @@ void Galerkin::mark_changed(const Body& body, const BodyDelta& delta, std::span<
   const NodeSet& nodes = body.nodes;
   for (const auto* list : {&delta.crack.new_faces, &delta.crack.removed_faces})
     for (const FaceId f : *list) faces_.push_back(body.surface.corners(f));
+  near_.note_changes(delta.crack.new_faces);
   for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i)
     supports_.push_back({nodes.position[i], nodes.radius[i]}), nodes_.push_back(static_cast<std::uint32_t>(i));
   for (std::size_t k = 0; k < delta.moved_nodes.size(); ++k) {

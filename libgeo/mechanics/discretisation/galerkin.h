@@ -4,8 +4,8 @@
 
 #include <functional>
 
-#include "mechanics/discretisation/diffraction.h"
 #include "mechanics/discretisation/material_points.h"
+#include "mechanics/discretisation/nearby_occluders.h"
 #include "mechanics/discretisation/quadrature.h"
 
 namespace geo {
@@ -39,7 +39,7 @@ class Galerkin {
   std::vector<std::array<Vec3, 3>> faces_;         // added or removed since the last rebuild
   std::vector<std::pair<Vec3, double>> supports_;  // balls of nodes that were added, moved or resized since
   std::vector<std::uint32_t> nodes_;               // these nodes
-  Occluders near_;                                 // near the last changes
+  NearbyOccluders near_;                           // near the last changes
 };
 
 }  // namespace geo

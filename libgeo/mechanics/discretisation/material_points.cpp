@@ -57,7 +57,8 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const ShapeGrad
 
 PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> sources) : points(std::move(all)) {
   const std::vector<SourceRun> runs = runs_of(sources);
-  LocalNodes local_nodes = list_nodes(runs);
+  thread_local std::vector<std::uint16_t> place;  // per node of the block: its index in `nodes`; as large as all nodes
+  LocalNodes local_nodes = list_nodes(runs, place);
   std::size_t entries = 0;
   for (const SourceRun& run : runs) entries += run.entries();
   entry_begin.reserve(points.size() + 1), entry_node.reserve(entries), entry_bent.reserve(entries);
@@ -65,7 +66,7 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
   entry_begin.push_back(0);
   for (const SourceRun& run : runs)
     if (run.shape)
-      append(*run.shape);
+      append(*run.shape, place);
     else
       append(run, local_nodes[run.block]);
   entry_gradient_single.push_back(0);  // vector loads of an entry read four numbers
@@ -80,8 +81,8 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
   for (const MaterialPoint& p : points) box.add(p.position);
 }
 
-// Lists the nodes of all points.
-PointBlock::LocalNodes PointBlock::list_nodes(std::span<const SourceRun> runs) {
+// Lists the nodes of all points, and sets the place of each.
+PointBlock::LocalNodes PointBlock::list_nodes(std::span<const SourceRun> runs, std::vector<std::uint16_t>& place) {
   LocalNodes local_nodes;
   std::span<const std::uint32_t> last;
   for (const SourceRun& run : runs)
@@ -101,17 +102,16 @@ PointBlock::LocalNodes PointBlock::list_nodes(std::span<const SourceRun> runs) {
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.size() > 65536)
     throw InputError("more than 65536 nodes share a block of material points; choose a smaller support");
+  if (!nodes.empty() && place.size() <= nodes.back()) place.resize(nodes.back() + 1);
+  for (std::size_t k = 0; k < nodes.size(); ++k) place[nodes[k]] = static_cast<std::uint16_t>(k);
   for (auto& [block, local] : local_nodes)
-    for (std::size_t k = 0; k < local.size(); ++k) local[k] = local_index(block->nodes[k]);
+    for (std::size_t k = 0; k < local.size(); ++k)
+      if (local[k]) local[k] = place[block->nodes[k]];
   return local_nodes;
 }
 
-std::uint16_t PointBlock::local_index(std::uint32_t node) const {
-  return static_cast<std::uint16_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-}
-
-void PointBlock::append(const ShapeGradients& shape) {
-  for (const auto j : shape.nodes) entry_node.push_back(local_index(j));
+void PointBlock::append(const ShapeGradients& shape, std::span<const std::uint16_t> place) {
+  for (const auto j : shape.nodes) entry_node.push_back(place[j]);
   for (const Vec3& g : shape.gradient) {
     entry_gradient.insert(entry_gradient.end(), g.begin(), g.end());
     entry_gradient_single.insert(entry_gradient_single.end(), g.begin(), g.end());

@@ -99,9 +99,8 @@ struct PointBlock {
  private:
   // Per source block: the indices in `nodes` of its nodes in use.
   using LocalNodes = std::map<const PointBlock*, std::vector<std::uint16_t>>;
-  LocalNodes list_nodes(std::span<const SourceRun> runs);
-  std::uint16_t local_index(std::uint32_t node) const;
-  void append(const ShapeGradients& shape);
+  LocalNodes list_nodes(std::span<const SourceRun> runs, std::vector<std::uint16_t>& place);
+  void append(const ShapeGradients& shape, std::span<const std::uint16_t> place);
   void append(const SourceRun& run, std::span<const std::uint16_t> local_node);
   void quantise(std::size_t quad);
   void copy_quad(std::size_t quad, const Source& from, const std::vector<std::uint16_t>& local_node);

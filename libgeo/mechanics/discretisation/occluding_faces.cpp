@@ -78,8 +78,7 @@ void OccludingFaces::update(const Complex& surface, std::span<const FaceId> ids)
 }
 
 void OccludingFaces::blocks(const Vec3& p, std::span<const Vec3> ends, std::uint8_t* result) const {
-  std::fill_n(result, ends.size(), std::uint8_t(0));
-  known_.boxes.add_blocked(known_.corners, known_.order, p, ends, result);
+  known_.boxes.blocked(known_.corners, known_.order, p, ends, result);
   fresh_.boxes.add_blocked(fresh_.corners, fresh_.order, p, ends, result);
 }
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "body/incremental_cache.h"
 #include "geometry/predicates.h"
@@ -260,10 +259,10 @@ struct Batch {
   static void forget_paths(const Trial& trial, Scratch& scratch) {
     const auto& [body, task, factor, faces, changes, components, changed] = trial;
     if (std::find(scratch.path.begin(), scratch.path.end(), Path::lost) == scratch.path.end()) return;
-    const VisibilityChanges::NearBalls balls = changes->balls_near(task.point->position, changed);
+    const VisibilityChanges::NearFaces near = changes->seen_from(task.point->position, changed);
     for (std::size_t q = 0; q < scratch.nodes.size(); ++q)
       if (scratch.hidden[q] && scratch.path[q] == Path::lost &&
-          balls.meet_bent_paths(scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]]))
+          near.meet_bent_paths(scratch.positions[q], factor * body.nodes.radius[scratch.nodes[q]]))
         scratch.path[q] = Path::unknown;
   }
 
@@ -337,32 +336,6 @@ std::vector<Batch> batches_of(std::span<const SupportTask> tasks, double distanc
   return batches;
 }
 
-double volume(const Box3& box) { return (box.hi - box.lo).prod(); }
-
-std::vector<FaceId> near_faces(const Complex& surface, std::span<const Batch> batches) {
-  // Boxes are merged while their union is no larger than their sum: overlapping queries become one.
-  std::vector<Box3> boxes;
-  for (const Batch& batch : batches) {
-    boxes.push_back(batch.influence);
-    while (boxes.size() > 1) {
-      Box3 both = boxes.end()[-2];
-      both.add(boxes.back());
-      if (volume(both) > volume(boxes.back()) + volume(boxes.end()[-2])) break;
-      boxes.pop_back(), boxes.back() = both;
-    }
-  }
-  std::vector<std::vector<FaceId>> near(boxes.size());
-  parallel_for(boxes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) surface.faces_near(boxes[b], near[b]);
-  });
-  std::vector<FaceId> ids;
-  std::vector<char> found(surface.face_count(), 0);
-  for (const auto& of_box : near)
-    for (const FaceId f : of_box)
-      if (!std::exchange(found[f.index()], 1)) ids.push_back(f);
-  return ids;
-}
-
 }  // namespace
 
 VisibilityChanges::VisibilityChanges(std::span<const std::array<Vec3, 3>> faces, std::span<const std::uint32_t> nodes,
@@ -370,6 +343,7 @@ VisibilityChanges::VisibilityChanges(std::span<const std::array<Vec3, 3>> faces,
     : faces_(faces), node_(node_count, 0) {
   for (const auto i : nodes) node_[i] = 1;
   for (const auto& [a, b, c] : faces) {
+    boxes_.push_back(box_of(a, b, c));
     const Vec3 middle = (a + b + c) / 3;
     balls_.push_back({middle, std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
   }
@@ -384,26 +358,35 @@ std::vector<std::uint32_t> VisibilityChanges::faces_near(const Vec3& x, double r
   const Box3 influence = Box3{x, x}.grown(radius * (1 + 2 * bend_margin));
   std::vector<std::uint32_t> near;
   for (const auto f : faces)
-    if (const auto& [a, b, c] = faces_.corners(f); box_of(a, b, c).meets(influence)) near.push_back(f);
+    if (boxes_[f].meets(influence)) near.push_back(f);
   return near;
 }
 
-VisibilityChanges::NearBalls VisibilityChanges::balls_near(const Vec3& x, std::span<const std::uint32_t> faces) const {
-  NearBalls near;
+VisibilityChanges::NearFaces VisibilityChanges::seen_from(const Vec3& x, std::span<const std::uint32_t> faces) const {
+  NearFaces near;
   near.x = x;
   for (const auto f : faces) {
     const auto& [middle, radius] = balls_[f];
-    near.balls.push_back({middle, 2 * radius, (middle - x).norm()});
+    near.faces.push_back({middle, 2 * radius, (middle - x).norm(), &faces_.corners(f)});
   }
   return near;
 }
 
-// All such paths fill an ellipsoid.
-bool VisibilityChanges::NearBalls::meet_bent_paths(const Vec3& node, double support) const {
-  const double longest = longest_path((node - x).norm(), support) + 2 * bend_margin * support;
-  return std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) {
-    const double rest = longest + ball.twice_radius - ball.distance;
-    return rest > 0 && (ball.middle - node).squaredNorm() < rest * rest;
+// All such paths fill an ellipsoid, which is nowhere farther than `width` from the segment to the
+// node. A face is outside of it if its ball is. So is one with all corners beyond a plane at this
+// distance, normal to the shortest way from the segment to the face's middle.
+bool VisibilityChanges::NearFaces::meet_bent_paths(const Vec3& node, double support) const {
+  const Vec3 along = node - x;
+  const double straight = along.norm(), longest = longest_path(straight, support) + 2 * bend_margin * support,
+               width = 0.5 * std::sqrt((longest - straight) * (longest + straight));
+  return std::any_of(faces.begin(), faces.end(), [&](const Face& face) {
+    const double rest = longest + face.twice_radius - face.distance;
+    if (!(rest > 0 && (face.middle - node).squaredNorm() < rest * rest)) return false;
+    const double at = std::clamp((face.middle - x).dot(along) / (straight * straight), 0.0, 1.0);
+    const Vec3 foot = x + at * along, normal = face.middle - foot;
+    const double beyond = width * normal.norm();
+    return std::any_of(face.corners->begin(), face.corners->end(),
+                       [&](const Vec3& c) { return !(normal.dot(c - foot) > beyond); });
   });
 }
 
@@ -418,16 +401,26 @@ Vec3 moved_off_faces(const Body& body, const Vec3& p) {
 }
 
 std::vector<std::uint32_t> supporting_nodes(const Body& body, const Box3& box, double factor, double largest_radius) {
+  constexpr std::size_t few = 1024;  // nodes, of which a look at each takes less time than a walk
   const auto& position = body.nodes.position;
-  const Box3 reach = box.grown(factor * largest_radius);
+  const auto& radius = body.nodes.radius;
   std::vector<std::uint32_t> nodes;
+  const auto add_if_near = [&](std::uint32_t j) {
+    const Vec3& x = position[j];
+    double away = 0;  // along the axis on which x is farthest from the box
+    for (int a = 0; a < 3; ++a) away = std::max({away, x[a] - box.hi[a], box.lo[a] - x[a]});
+    if (away <= factor * radius[j]) nodes.push_back(j);
+  };
+  if (position.size() <= few) {
+    for (std::uint32_t j = 0; j < position.size(); ++j) add_if_near(j);
+    return nodes;
+  }
+  const Box3 reach = box.grown(factor * largest_radius);
   body.cache->grid.walk(
       [&](int, const Vec3& middle, double half) {
         return reach.meets({middle - Vec3::Constant(half), middle + Vec3::Constant(half)});
       },
-      [&](int, std::uint32_t j) {
-        if (box.grown(factor * body.nodes.radius[j]).meets({position[j], position[j]})) nodes.push_back(j);
-      });
+      [&](int, std::uint32_t j) { add_if_near(j); });
   std::sort(nodes.begin(), nodes.end());
   return nodes;
 }
@@ -451,8 +444,9 @@ bool straight_shape(const Body& body, const PointBlock& block, std::size_t point
 }
 
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders,
-                      const VisibilityChanges* changes, std::span<const std::uint32_t> component, Occluders* kept) {
-  Occluders own, &near = kept ? *kept : own;
+                      const VisibilityChanges* changes, std::span<const std::uint32_t> component,
+                      NearbyOccluders* kept) {
+  NearbyOccluders own;
   const NodeComponents components(component);
   const double largest_radius = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
   // Two passes: most points need no wider support, so the first pass queries small neighbourhoods.
@@ -462,10 +456,13 @@ void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Oc
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) batches[b].find_nodes(body, factors.back(), largest_radius, changes);
     });
-    if (!occluders) near.update(body.surface, near_faces(body.surface, batches));
+    std::vector<Box3> influence;
+    for (const Batch& batch : batches) influence.push_back(batch.influence);
+    const Occluders& near = occluders ? *occluders
+                            : kept    ? kept->near(body.surface, influence, largest_radius)
+                                      : own.near(body.surface, influence, 0);
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t b = begin; b < end; ++b)
-        batches[b].compute(body, factors, occluders ? *occluders : near, changes, components);
+      for (std::size_t b = begin; b < end; ++b) batches[b].compute(body, factors, near, changes, components);
     });
     std::vector<SupportTask> deficient;
     for (const Batch& batch : batches)

@@ -2,6 +2,7 @@
 // ahead or round the front of a crack. Supports are widened until a point sees enough nodes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -12,6 +13,7 @@
 #include "kerf/body.h"
 #include "mechanics/discretisation/diffraction.h"
 #include "mechanics/discretisation/material_points.h"
+#include "mechanics/discretisation/nearby_occluders.h"
 
 namespace geo {
 
@@ -41,27 +43,32 @@ class VisibilityChanges {
   /// Appends the faces that lines of sight of points in a box may touch, bent ones included.
   /// `radius`: the largest influence radius of the points.
   void faces_near(const Box3& points, double radius, std::vector<std::uint32_t>& faces) const;
+  /// Whether one of `faces` may touch a point.
+  bool may_touch(const Vec3& x, std::span<const std::uint32_t> faces) const {
+    return std::any_of(faces.begin(), faces.end(), [&](auto f) { return boxes_[f].meets({x, x}); });
+  }
   /// Those of `faces` that lines of sight of a point may touch, with `radius` the point's.
   std::vector<std::uint32_t> faces_near(const Vec3& x, double radius, std::span<const std::uint32_t> faces) const;
-  /// Balls about faces, and how far they are from a point x.
-  struct NearBalls {
+  /// Faces, and how far they are from a point x.
+  struct NearFaces {
     /// Whether one of the faces may touch a path from x to a node that is shorter than its support
     /// admits.
     bool meet_bent_paths(const Vec3& node, double support) const;
 
-    /// A ball about a face.
-    struct Ball {
-      Vec3 middle;
-      double twice_radius, distance;  ///< twice its radius; of its middle from x
+    struct Face {
+      Vec3 middle;                    ///< of a ball about the face
+      double twice_radius, distance;  ///< twice the radius of the ball; of its middle from x
+      const std::array<Vec3, 3>* corners;
     };
     Vec3 x;
-    std::vector<Ball> balls;
+    std::vector<Face> faces;
   };
-  /// The balls about `faces`, which are those of faces_near() for x.
-  NearBalls balls_near(const Vec3& x, std::span<const std::uint32_t> faces) const;
+  /// Some `faces`, which are those of faces_near() for x. Refers to this object.
+  NearFaces seen_from(const Vec3& x, std::span<const std::uint32_t> faces) const;
 
  private:
   TriangleBvh faces_;
+  std::vector<Box3> boxes_;                     // per face
   std::vector<std::pair<Vec3, double>> balls_;  // per face: a ball about it
   std::vector<std::uint8_t> node_;              // per node: 1 if it has changed
 };
@@ -87,10 +94,9 @@ bool straight_shape(const Body& body, const PointBlock& block, std::size_t point
 /// touch are not tested again, with the same result. Null: all are tested. `component`: per node,
 /// of the visibility graph. A point sees nodes of one component only, so no paths to others are
 /// tried, and points of components with few nodes try fewer factors, with the same result. Empty:
-/// all are tried. `kept`: nearby occluders of the call before, which become those of this one.
-/// Null: none.
+/// all are tried. `kept`: nearby occluders, kept for later calls. Null: none.
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders = nullptr,
                       const VisibilityChanges* changes = nullptr, std::span<const std::uint32_t> component = {},
-                      Occluders* kept = nullptr);
+                      NearbyOccluders* kept = nullptr);
 
 }  // namespace geo

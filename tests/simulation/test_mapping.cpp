@@ -1,6 +1,10 @@
 // The map from the world to the material, and the fronts of blades.
 #include <catch2/catch.hpp>
 
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+
 #include "base/random.h"
 #include "body/incremental_cache.h"
 #include "cases.h"
@@ -18,23 +22,48 @@ using namespace geo;
 
 namespace {
 
-// A block whose upper half is bent over.
-struct Bent {
+using Map = std::function<Vec3(const Vec3&)>;
+
+// Bends the upper half of a block over.
+Vec3 bent(const Vec3& x) {
+  const double a = 0.6 * x.z(), r = 1 / 0.6 - x.x();
+  return {1 / 0.6 - r * std::cos(a), x.y(), r * std::sin(a)};
+}
+
+// Twists a block about its axis, and bends it by waves in random directions.
+Map twisted(double amplitude, Random& random) {
+  const Vec3 long_wave = random.uniform(1, 6) * random.direction(), along = random.direction(),
+             short_wave = random.uniform(2, 10) * random.direction(), across = random.direction();
+  return [=](const Vec3& x) {
+    const Vec3 axis(0.5, 0.5, 0);
+    const Vec3 turned = axis + Eigen::AngleAxisd(3 * amplitude * x.z(), Vec3::UnitZ()) * (x - axis);
+    return Vec3(turned +
+                amplitude * (0.25 * std::sin(long_wave.dot(x)) * along + 0.05 * std::sin(short_wave.dot(x)) * across));
+  };
+}
+
+// A deformed block.
+struct Deformed {
   Body body = block();
   Solid solid{body.nodes, body.graph, {}};
   std::vector<Vec3> u;
   LazyNodalGradients gradient = lazy_gradients(solid.discretisation(), u);
-  Bent() {
-    for (const Vec3& x : body.nodes.position) {
-      const double a = 0.6 * x.z(), r = 1 / 0.6 - x.x();
-      u.push_back(Vec3(1 / 0.6 - r * std::cos(a), x.y(), r * std::sin(a)) - x);
-    }
+  explicit Deformed(const Map& to = bent) {
+    for (const Vec3& x : body.nodes.position) u.push_back(to(x) - x);
   }
   static Body block() {
     const TriangleMesh mesh = make_block({1, 1, 2}, 0.2);
     SampleOptions sampling;
     sampling.spacing = 0.2, sampling.levels = 1;
     return build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
+  }
+  // Eq. 1 inside.
+  Vec3 image(const Vec3& x) const {
+    std::vector<std::pair<NodeId, double>> nodes;
+    for (std::uint32_t n = 0; n < body.nodes.size(); ++n)
+      if (const double d = (body.nodes.position[n] - x).norm(); d < body.nodes.radius[n])
+        nodes.push_back({NodeId(n), d});
+    return x + displacement_at(x, nodes, body.nodes, u, gradient);
   }
   Vec3 skin(SurfaceVertexId v) const {
     std::vector<std::pair<NodeId, double>> nodes;
@@ -47,24 +76,37 @@ struct Bent {
 }  // namespace
 
 TEST_CASE("inside, the inverse of Eq. 1 leads back to the point") {
-  const Bent b;
+  const Deformed b;
   const InverseDeformation map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
   Random random(5);
   for (int i = 0; i < 200; ++i) {
     const Vec3 x(random.uniform(0.25, 0.75), random.uniform(0.25, 0.75), random.uniform(0.25, 1.75));
-    std::vector<std::pair<NodeId, double>> nodes;
-    for (std::uint32_t n = 0; n < b.body.nodes.size(); ++n)
-      if (const double d = (b.body.nodes.position[n] - x).norm(); d < b.body.nodes.radius[n])
-        nodes.push_back({NodeId(n), d});
-    const InverseDeformation::Location place =
-        map.to_material(x + displacement_at(x, nodes, b.body.nodes, b.u, b.gradient));
+    const InverseDeformation::Location place = map.to_material(b.image(x));
     REQUIRE(place.in_support);
     CHECK((place.position - x).norm() < 1e-10);
   }
 }
 
+TEST_CASE("inside a block that is twisted far, the inverse loses hardly any place") {
+  const auto [first, count] = seeds(12);
+  int lost = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    const Deformed b(twisted(0.7, random));
+    const InverseDeformation map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
+    for (int i = 0; i < 400; ++i) {
+      const Vec3 x(random.uniform(0.25, 0.75), random.uniform(0.25, 0.75), random.uniform(0.25, 1.75)), y = b.image(x);
+      const InverseDeformation::Location place = map.to_material(y);
+      REQUIRE(place.in_support);
+      lost += !((b.image(place.position) - y).norm() < 0.01);  // a twentieth of a spacing
+    }
+  }
+  CHECK(lost <= count);  // of 400 each
+}
+
 TEST_CASE("on the skin, the inverse is linear on each deformed triangle") {
-  const Bent b;
+  const Deformed b;
   const InverseDeformation map(b.body, b.u, b.gradient, {Vec3::Constant(-9), Vec3::Constant(9)});
   Random random(6);
   for (std::uint32_t f = 0; f < b.body.surface.face_count(); f += 3) {
@@ -84,7 +126,7 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    const Bent b;
+    const Deformed b;
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) {
       const Vec3 x(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 2));

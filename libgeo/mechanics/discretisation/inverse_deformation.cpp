@@ -1,5 +1,5 @@
-// Newton-like iteration for y = x + u(x), u by Eq. 1: x ← x + F⁻¹ (y − x − u(x)), while the
-// residual falls. F blends the nodes' gradients and leaves out the derivatives of the weights.
+// Broyden's method (1965) for y = x + u(x), u by Eq. 1, while the residual falls. It begins with
+// the inverse of F, which blends the nodes' gradients and leaves out derivatives of the weights.
 #include "mechanics/discretisation/inverse_deformation.h"
 
 #include <Eigen/LU>
@@ -78,16 +78,31 @@ bool InverseDeformation::deform(Neighborhood& near, const Vec3& x, Vec3& to, Mat
   return true;
 }
 
+// Where the residual does not fall, the inverse that the steps have changed may be at fault: it is
+// set to that of F at the best place.
 Vec3 InverseDeformation::solve(Neighborhood& near, Vec3 x, double tolerance) const {
-  Vec3 best = x, to;
-  Mat3 f;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 24 && deform(near, x, to, f); ++i) {
-    const Vec3 residual = near.world - to;
-    if (!(residual.norm() < smallest)) break;
-    smallest = residual.norm(), best = x;
-    if (smallest <= tolerance) break;
-    x += safe_inverse(f) * residual;
+  constexpr double least_share = 0.1;  // of a step's square; below it, an update of the inverse is left out
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Vec3 best = x, to, residual = Vec3::Zero(), step = Vec3::Zero();
+  Mat3 f, f_best = Mat3::Identity(), inverse = Mat3::Identity();
+  double smallest = infinite;
+  bool is_changed = false;  // the inverse is not that of F at a place
+  for (int i = 0; i < 24; ++i) {
+    const Vec3 now = deform(near, x, to, f) ? Vec3(near.world - to) : Vec3(Vec3::Constant(infinite));
+    if (now.norm() < smallest) {
+      if (smallest == infinite)
+        inverse = safe_inverse(f);
+      else if (const Vec3 expected = inverse * (residual - now);
+               std::abs(step.dot(expected)) > least_share * step.squaredNorm())
+        inverse += (step - expected) * (step.transpose() * inverse) / step.dot(expected), is_changed = true;
+      smallest = now.norm(), best = x, residual = now, f_best = f;
+      if (smallest <= tolerance) break;
+    } else if (is_changed) {
+      inverse = safe_inverse(f_best), is_changed = false;
+    } else {
+      break;
+    }
+    step = inverse * residual, x = best + step;
   }
   return best;
 }
@@ -110,10 +125,13 @@ Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, doub
   const Vec3& y = near.world;
   Vec3 to;
   Mat3 f;
-  std::vector<FaceId> faces;
-  body_.surface.faces_near(Box3{x, x}.grown(2 * range), faces);
-  if (faces.empty() || !deform(near, x, to, f)) return Vec3::Zero();
+  if (!deform(near, x, to, f)) return Vec3::Zero();
   const Mat3 f_inverse = safe_inverse(f);
+  // The box holds the material within `range` in the world, if F hardly changes there. Twice the
+  // range bounds it: beyond, another part of the material may be near y in the world.
+  const Vec3 reach = range * (1.5 * f_inverse.rowwise().norm()).cwiseMin(2);
+  std::vector<FaceId> faces;
+  body_.surface.faces_near({x - reach, x + reach}, faces);
   Vec3 sum = Vec3::Zero();
   double total = 0, nearest = range;
   for (const FaceId face : faces) {

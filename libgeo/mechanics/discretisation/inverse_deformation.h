@@ -10,7 +10,7 @@
 
 namespace geo {
 
-/// Inverts Eq. 1 by a Newton-like iteration. Only nodes that are near the point both in the
+/// Inverts Eq. 1 by Broyden's method. Only nodes that are near the point both in the
 /// material and in the world take part: fully up to 1.5 support radii in the world, fading to none
 /// at 3. Hence material that is close in the world but far in the material, such as the two sides
 /// of an open cut, is not mixed. The initial guess blends the nodes' own affine maps with kernel

@@ -13,6 +13,7 @@
 
 #include "bench.h"
 #include "client.h"
+#include "cut_times.h"
 #include "kerf/mesh.h"
 #include "live/loop.h"
 #include "live_heap.h"
@@ -172,18 +173,17 @@ double throttled_pace(const sim::Setup& s, double seconds) {
   return passed;
 }
 
-// Mean time of a frame that cuts over that of one that does not, in the same run. The frame after a
-// cut counts as one: it computes the points that follow.
+// Mean time of a frame that cuts over that of one that does not, in the same run.
 double cut_ratio(const std::string& name, double seconds) {
   const sim::Setup s = scene(name, 60);
   live::Session session(s, {});
   const Strokes strokes(name, geo::bounding_box(s.models.all));
-  double cut = 0, plain = 0, cuts = 0, plains = 0;
+  CutTimes times;
   std::uint64_t last = ~std::uint64_t(0);
   live::Snapshot shown;
   session.show(shown);
   const double rate = s.scene.frame_rate;
-  bool holds = false, follows = false;
+  bool holds = false;
   for (int frame = 0; frame < seconds * rate; ++frame) {
     live::Stroke stroke = strokes.pose(frame / rate);
     if (stroke.phase != live::Phase::end && stroke.id != last) {
@@ -194,15 +194,9 @@ double cut_ratio(const std::string& name, double seconds) {
       holds = stroke.phase != live::Phase::end;
       session.obey(1, stroke);
     }
-    const auto start = Clock::now();
-    session.advance();
-    const double time = seconds_since(start);
-    const bool has_cut = session.has_cut();
-    (has_cut || follows ? cut : plain) += time;
-    (has_cut || follows ? cuts : plains) += 1;
-    follows = has_cut;
+    times.advance(session);
   }
-  return (cut / std::max(1.0, cuts)) / (plain / std::max(1.0, plains));
+  return times.cut() / times.plain();
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 #include "live_heap.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <stdexcept>
 
+#include "cut_times.h"
 #include "kerf/mesh.h"
 #include "live/bare_model.h"
 #include "live/session.h"
@@ -32,14 +32,6 @@ live::Stroke pose(const geo::Box3& box, int frame) {
   return s;
 }
 
-// Sum and number of some times.
-struct Times {
-  double sum = 0;
-  int count = 0;
-  void add(double seconds) { sum += seconds, ++count; }
-  double mean_ms() const { return 1e3 * sum / std::max(1, count); }
-};
-
 }  // namespace
 
 void heap(const std::string& model, Figures& figures) {
@@ -48,13 +40,10 @@ void heap(const std::string& model, Figures& figures) {
   live::Session session(setup, {});
   const geo::Box3 box = geo::bounding_box(setup.models.all);
   for (int k = -1; k < strokes; ++k) {
-    Times plain, cut;
+    CutTimes times;
     for (int frame = 0; frame < frames_each; ++frame) {
       if (k >= 0 && frame <= frames_down) session.obey(1, pose(box, k * frames_each + frame));
-      const auto start = std::chrono::steady_clock::now();
-      if (const std::string why = session.advance(); !why.empty()) throw std::runtime_error(model + ": " + why);
-      (session.has_cut() ? cut : plain)
-          .add(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      if (const std::string why = times.advance(session); !why.empty()) throw std::runtime_error(model + ": " + why);
     }
     const std::string name = std::filesystem::path(model).stem().string() + "_" + std::to_string(k + 1) + "_";
     const geo::Complex& surface = session.run().body().surface;
@@ -63,7 +52,7 @@ void heap(const std::string& model, Figures& figures) {
       for (const int which : {0, 1}) triangles += surface.has({geo::FaceId(f), which});
     figures[name + "pieces"] = session.pieces(), figures[name + "triangles"] = double(triangles);
     figures[name + "nodes"] = double(session.run().body().nodes.size());
-    figures[name + "frame_ms"] = plain.mean_ms(), figures[name + "cut_ms"] = cut.mean_ms();
+    figures[name + "frame_ms"] = 1e3 * times.plain(), figures[name + "cut_ms"] = 1e3 * times.cut();
   }
 }
 

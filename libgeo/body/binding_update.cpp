@@ -41,6 +41,7 @@ class BindingUpdate::Impl {
     for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
     update_masters();
     update_trees_at_changed_edges(delta);
+    offer_to_orphans();
     grow();
   }
   std::vector<SurfaceVertexId> finish() {
@@ -112,12 +113,13 @@ class BindingUpdate::Impl {
 
 namespace {
 
-ClosestVertices closest_vertices(const Body& body, std::span<const std::uint32_t> nodes) {
+ClosestVertices closest_vertices(const Body& body, std::span<const NodeId> nodes) {
   ClosestVertices result(nodes.size());
   parallel_for(nodes.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s)
-      result[s] = {NodeId(nodes[s]),
-                   closest_vertex(body.surface, body.nodes.position[nodes[s]], body.nodes.radius[nodes[s]])};
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t i = nodes[s].index();
+      result[s] = {nodes[s], closest_vertex(body.surface, body.nodes.position[i], body.nodes.radius[i])};
+    }
   });
   return result;
 }
@@ -134,22 +136,22 @@ ClosestVertices closest_after(const Body& body, const CrackDelta& delta) {
   std::vector<std::array<Vec3, 3>> faces;
   for (const FaceId f : delta.new_faces) faces.push_back(k.corners(f));
   const TriangleBvh changed(faces);
-  std::vector<std::uint32_t> stale;
+  std::vector<NodeId> stale;
   body.cache->grid.walk(
       [&](int, const Vec3& middle, double half) {
         return changed.closest(middle, std::numbers::sqrt3 * half + 1.06 * reach).triangle != none;
       },
-      [&](int, std::uint32_t i) { stale.push_back(i); });
+      [&](int, std::uint32_t i) { stale.push_back(NodeId(i)); });
   parallel_for(stale.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      const auto i = stale[s];
+      const std::size_t i = stale[s].index();
       const auto closest = body.binding.closest[i];
       const double far =
           closest.valid() && k.alive(closest) ? (k.point(k.site(closest)) - x[i]).norm() : body.nodes.radius[i];
-      if (changed.closest(x[i], 1.06 * far).triangle == none) stale[s] = none;
+      if (changed.closest(x[i], 1.06 * far).triangle == none) stale[s] = NodeId();
     }
   });
-  std::erase(stale, none);
+  std::erase(stale, NodeId());
   std::sort(stale.begin(), stale.end());
   return closest_vertices(body, stale);
 }
@@ -174,9 +176,7 @@ void BindingUpdate::Impl::update_closest(const ClosestVertices& closest) {
 }
 
 void BindingUpdate::Impl::update_closest_of(const std::vector<NodeId>& nodes) {
-  std::vector<std::uint32_t> ids;
-  for (const NodeId i : nodes) ids.push_back(i.value);
-  update_closest(closest_vertices(body_, ids));
+  update_closest(closest_vertices(body_, nodes));
 }
 
 // The node that carries an unseen shell v changes in three cases: it moved, it is in another piece
@@ -262,9 +262,6 @@ void BindingUpdate::Impl::update_trees_at_changed_edges(const CrackDelta& delta)
     if (b_.master[v.index()].valid() && is_unseen_master(master)) dismiss_unseen_master(master);
   }
   orphans_.insert(orphans_.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
-  std::sort(orphans_.begin(), orphans_.end());
-  orphans_.erase(std::unique(orphans_.begin(), orphans_.end()), orphans_.end());
-  at.insert(at.end(), orphans_.begin(), orphans_.end());
   for (const auto v : at)
     for (const auto w : around(v)) {
       if (depth_[w.index()] != no_depth) offer(v, depth_[w.index()] + 1, w);

@@ -10,6 +10,7 @@
 
 namespace geo {
 
+/// Not thread-safe.
 class NearbyOccluders {
  public:
   /// Notes that the surface has changed. `added`: faces that it gained.

@@ -342,11 +342,8 @@ VisibilityChanges::VisibilityChanges(std::span<const std::array<Vec3, 3>> faces,
                                      std::size_t node_count)
     : faces_(faces), node_(node_count, 0) {
   for (const auto i : nodes) node_[i] = 1;
-  for (const auto& [a, b, c] : faces) {
-    boxes_.push_back(box_of(a, b, c));
-    const Vec3 middle = (a + b + c) / 3;
-    balls_.push_back({middle, std::max({(a - middle).norm(), (b - middle).norm(), (c - middle).norm()})});
-  }
+  for (const auto& face : faces)
+    boxes_.push_back(box_of(face[0], face[1], face[2])), balls_.push_back(bounding_ball(face));
 }
 
 void VisibilityChanges::faces_near(const Box3& points, double radius, std::vector<std::uint32_t>& faces) const {
@@ -446,7 +443,7 @@ bool straight_shape(const Body& body, const PointBlock& block, std::size_t point
 void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Occluders* occluders,
                       const VisibilityChanges* changes, std::span<const std::uint32_t> component,
                       NearbyOccluders* kept) {
-  NearbyOccluders own;
+  NearbyOccluders own, &nearby = kept ? *kept : own;
   const NodeComponents components(component);
   const double largest_radius = *std::max_element(body.nodes.radius.begin(), body.nodes.radius.end());
   // Two passes: most points need no wider support, so the first pass queries small neighbourhoods.
@@ -458,9 +455,7 @@ void compute_supports(const Body& body, std::vector<SupportTask> tasks, const Oc
     });
     std::vector<Box3> influence;
     for (const Batch& batch : batches) influence.push_back(batch.influence);
-    const Occluders& near = occluders ? *occluders
-                            : kept    ? kept->near(body.surface, influence, largest_radius)
-                                      : own.near(body.surface, influence, 0);
+    const Occluders& near = occluders ? *occluders : nearby.near(body.surface, influence, kept ? largest_radius : 0);
     parallel_for(batches.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) batches[b].compute(body, factors, near, changes, components);
     });

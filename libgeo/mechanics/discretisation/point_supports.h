@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/bvh.h"
+#include "geometry/distance.h"
 #include "kerf/body.h"
 #include "mechanics/discretisation/diffraction.h"
 #include "mechanics/discretisation/material_points.h"
@@ -68,9 +69,9 @@ class VisibilityChanges {
 
  private:
   TriangleBvh faces_;
-  std::vector<Box3> boxes_;                     // per face
-  std::vector<std::pair<Vec3, double>> balls_;  // per face: a ball about it
-  std::vector<std::uint8_t> node_;              // per node: 1 if it has changed
+  std::vector<Box3> boxes_;         // per face
+  std::vector<Ball> balls_;         // per face
+  std::vector<std::uint8_t> node_;  // per node: 1 if it has changed
 };
 
 /// A point whose shape gradients are to be computed. In: its position, and as `influence_radius`

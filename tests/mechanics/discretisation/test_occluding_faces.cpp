@@ -5,8 +5,7 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "geometry/bvh.h"
-#include "mechanics/bodies.h"
+#include "mechanics/discretisation/random_cracks.h"
 
 using namespace geo;
 
@@ -14,12 +13,6 @@ namespace {
 
 Vec3 random_point(Random& random) {
   return {random.uniform(-0.1, 1.1), random.uniform(-0.1, 1.1), random.uniform(-0.1, 1.1)};
-}
-
-TriangleBvh tree_over(const Complex& surface, std::span<const FaceId> faces) {
-  std::vector<std::array<Vec3, 3>> corners;
-  for (const FaceId f : faces) corners.push_back(surface.corners(f));
-  return TriangleBvh(corners);
 }
 
 }  // namespace
@@ -34,39 +27,28 @@ TEST_CASE("kept faces block what a tree over them blocks, through cuts and steps
     Complex surface = Complex::from_skin(make_block({1, 1, 1}, random.uniform(0.1, 0.3)));
     OccludingFaces faces;
     CHECK(faces.empty());
-    for (int crack = 1; crack <= 3; ++crack) {
-      const Vec3 a(random.uniform(0.2, 0.8), -0.2, 1.1), b(random.uniform(0.2, 0.8), 1.2, 1.1);
-      const Vec3 step(random.uniform(-0.05, 0.05), 0, -random.uniform(0.1, 0.3));
-      auto front = begin_front(blade_at(a, b, step, 0, 5), false, crack);
-      for (int k = 1; k <= 4; ++k) {
-        const FrontState before = front;
-        advance(surface, front, blade_at(a, b, step, k, 5));
-        if (random.below(4) == 0) surface.undo(), front = before;
-        std::vector<FaceId> alive, near;
-        const Vec3 middle = random_point(random);
-        const Box3 box = Box3{middle, middle}.grown(random.uniform(0.2, 1.2));
-        for (std::uint32_t f = 0; f < surface.face_count(); ++f)
-          if (surface.alive(FaceId(f))) {
-            alive.push_back(FaceId(f));
-            if (surface.box(FaceId(f)).meets(box)) near.push_back(FaceId(f));
-          }
-        faces.update(surface, near);
-        const TriangleBvh least = tree_over(surface, near), most = tree_over(surface, alive);
-        for (int i = 0; i < 20; ++i) {
-          const Vec3 p = random_point(random);
-          std::vector<Vec3> ends(1 + random.below(40));
-          for (Vec3& q : ends) q = p + random.uniform(0.01, 0.5) * random.direction();
-          std::vector<std::uint8_t> result(ends.size(), 2), at_least = result, at_most = result;
-          faces.blocks(p, ends, result.data());
-          least.blocks(p, ends, at_least.data()), most.blocks(p, ends, at_most.data());
-          for (std::size_t e = 0; e < ends.size(); ++e) {
-            CHECK(at_least[e] <= result[e]);
-            CHECK(result[e] <= at_most[e]);
-            blocked += result[e] == 1, free += result[e] == 0, kept += result[e] != at_least[e];
-          }
+    grow_cracks(surface, random, 3, 4, 0.1, 0.3, [&](const FrontState&, const CrackDelta&) {
+      const Vec3 middle = random_point(random);
+      const Box3 box = Box3{middle, middle}.grown(random.uniform(0.2, 1.2));
+      const std::vector<FaceId> alive = living_faces(surface);
+      std::vector<FaceId> near = alive;
+      std::erase_if(near, [&](FaceId f) { return !surface.box(f).meets(box); });
+      faces.update(surface, near);
+      const TriangleBvh least = tree_over(surface, near), most = tree_over(surface, alive);
+      for (int i = 0; i < 20; ++i) {
+        const Vec3 p = random_point(random);
+        std::vector<Vec3> ends(1 + random.below(40));
+        for (Vec3& q : ends) q = p + random.uniform(0.01, 0.5) * random.direction();
+        std::vector<std::uint8_t> result(ends.size(), 2), at_least = result, at_most = result;
+        faces.blocks(p, ends, result.data());
+        least.blocks(p, ends, at_least.data()), most.blocks(p, ends, at_most.data());
+        for (std::size_t e = 0; e < ends.size(); ++e) {
+          CHECK(at_least[e] <= result[e]);
+          CHECK(result[e] <= at_most[e]);
+          blocked += result[e] == 1, free += result[e] == 0, kept += result[e] != at_least[e];
         }
       }
-    }
+    });
   }
   CHECK(blocked > 1000);
   CHECK(free > 1000);

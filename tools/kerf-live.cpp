@@ -44,8 +44,7 @@ void require_options(const Command& command) {
 void serve(const Command& command, const tool::Tool& t) {
   require_options(command);
   const sim::Setup setup = read(command, t);
-  const geo::Progress progress = t.progress();
-  live::Session session(setup, progress);
+  live::Session session(setup, t.progress());
   sim::warn_of_coarse_models(setup, session.run().body(), t);
   sim::warn_of_empty_grips(setup, session.run().body(), t);
   live::Inbox inbox;
@@ -56,8 +55,8 @@ void serve(const Command& command, const tool::Tool& t) {
     const bool opened = !command.no_browser && live::open_browser(server.url());
     t.say(opened ? "kerf-live: opened in the browser; Ctrl-C ends it"
                  : "kerf-live: open this address in a browser; Ctrl-C ends it");
-    const auto keep_on = [&] { return progress("", 1, 1); };
-    live::run_loop(session, inbox, server, {name, command.linger, keep_on, !live::is_scene(command.scene)});
+    live::run_loop(session, inbox, server,
+                   {name, command.linger, &tool::Tool::goes_on, !live::is_scene(command.scene)});
   }
   if (command.record.empty()) return;
   const std::string folder = fs::absolute(command.record).parent_path().string();

@@ -52,14 +52,21 @@ void wait_for(const sigset_t& signals, double seconds) {
   }
 }
 
-// Starts a thread that waits for Ctrl-C. It requests the work to stop; where that takes longer than
-// `patience`, or a second Ctrl-C comes, it removes incomplete outputs and ends the program.
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+// Starts a thread that waits for Ctrl-C or for the end of the terminal. It requests the work to
+// stop; where that takes longer than `patience`, or a second Ctrl-C comes, it removes incomplete
+// outputs and ends the program.
 void watch_signals(const std::string& name, double patience) {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any other thread starts: all inherit it
+  if (!is_ignored(SIGHUP)) sigaddset(&signals, SIGHUP);  // nohup has it ignored
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);         // before any other thread starts: all inherit it
   std::thread([signals, name, patience] {
     int signal = 0;
     sigwait(&signals, &signal);
@@ -296,9 +303,11 @@ geo::Progress Tool::progress() const {
                    done == total ? "\r\033[K" : "");
       bar_shown = done != total;
     }
-    return !interrupted;
+    return goes_on();
   };
 }
+
+bool Tool::goes_on() { return !interrupted; }
 
 void Tool::say(const std::string& line) const {
   if (quiet) return;

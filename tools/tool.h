@@ -67,6 +67,8 @@ class Tool {
   /// A progress bar on standard error, if that is a terminal or as --progress says. Its result
   /// stops the work after Ctrl-C.
   geo::Progress progress() const;
+  /// Whether the work is to go on: there was no Ctrl-C.
+  static bool goes_on();
   /// Prints a line to standard error unless -q is given.
   void say(const std::string& line) const;
 

@@ -32,6 +32,11 @@ Box3 box_about(const Blade& blade, const Pose& pose) {
   return box;
 }
 
+// The time at a fraction of a step, s.
+double time_at(const MovedBody& moved, double fraction) {
+  return fraction == 1 ? moved.end : moved.begin + fraction * (moved.end - moved.begin);
+}
+
 // The height of a triangle over its longest side.
 double height(const std::array<Vec3, 3>& t) {
   double longest = 0;
@@ -53,6 +58,25 @@ bool has_in_order(const Complex& surface, FaceId f, VertexId a, VertexId b) {
   for (std::size_t k = 0; k < 3; ++k)
     if (v[k] == a && v[(k + 1) % 3] == b) return true;
   return false;
+}
+
+// The longest way of those blade points `outside` the body before and after a step that pass
+// through it. Looks at steps of `most`.
+double longest_way_through(const MovedBody& moved, const Blade& blade, std::span<const std::size_t> outside,
+                           double most) {
+  const Pose from = blade.motion.at(moved.begin), to = blade.motion.at(moved.end);
+  Box3 swept;
+  for (const std::size_t i : outside) swept.add(from * blade.points[i]), swept.add(to * blade.points[i]);
+  const MapAt after(moved, blade, 1, swept);
+  InverseDeformation::VertexCache memory;
+  double longest = 0;
+  for (const std::size_t i : outside) {
+    const Vec3 start = from * blade.points[i], way = to * blade.points[i] - start;
+    const double steps = std::min(std::ceil(way.norm() / most), most_cuts);
+    for (int k = 1; k < steps && way.norm() > longest; ++k)
+      if (after.map().to_material(start + k / steps * way, memory).in_support) longest = way.norm();
+  }
+  return longest;
 }
 
 // A bound of what number_of_cuts() measures, without the map.
@@ -88,10 +112,13 @@ std::vector<Vec3> NodeWay::at(const std::vector<Vec3>& after, double fraction) c
 }
 
 MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction)
-    : pose_(blade.motion.at(fraction == 1 ? moved.end : moved.begin + fraction * (moved.end - moved.begin))),
+    : MapAt(moved, blade, fraction, box_about(blade, blade.motion.at(time_at(moved, fraction)))) {}
+
+MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction, const Box3& box)
+    : pose_(blade.motion.at(time_at(moved, fraction))),
       displacement_(moved.way.at(moved.motion.displacement, fraction)),
       gradient_(lazy_gradients(moved.solid.discretisation(), displacement_)),
-      map_(moved.body, displacement_, gradient_, box_about(blade, pose_)) {}
+      map_(moved.body, displacement_, gradient_, box) {}
 
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts) {
   const auto& spacing = moved.body.nodes.spacing;
@@ -99,6 +126,7 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
   if (longest_way(moved, blade) <= most) return 1;
   const MapAt before(moved, blade, 0), after(moved, blade, 1);
   std::vector<double> ways(blade.points.size(), 0);
+  std::vector<double> ways_outside(ways.size(), 0);
   parallel_for(ways.size(), 4, [&](std::size_t begin, std::size_t end) {
     InverseDeformation::VertexCache before_memory, after_memory;
     for (std::size_t i = begin; i < end; ++i) {
@@ -106,17 +134,21 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
       const Vec3 from = before.pose() * blade.points[i], to = after.pose() * blade.points[i];
       const auto a = before.map().to_material(from, before_memory, place ? &*place : nullptr);
       const auto b = after.map().to_material(to, after_memory, &a.position);
-      if (!a.in_support && !b.in_support) continue;
       if (!a.in_support || !b.in_support) {
-        ways[i] = (to - from).norm();
+        (a.in_support || b.in_support ? ways : ways_outside)[i] = (to - from).norm();
         continue;
       }
       const double past = (to - from - moved.way.of(a.nearest)).norm(), through = (b.position - a.position).norm();
       ways[i] = through <= most_compression * past ? through : past;
     }
   });
+  const auto cuts = [&](double way) { return std::clamp(std::ceil(way / most), 1.0, most_cuts); };
   const double farthest = *std::max_element(ways.begin(), ways.end());
-  return static_cast<int>(std::clamp(std::ceil(farthest / most), 1.0, most_cuts));
+  std::vector<std::size_t> outside;  // points that may need more cuts
+  for (std::size_t i = 0; i < ways.size(); ++i)
+    if (cuts(ways_outside[i]) > cuts(farthest)) outside.push_back(i);
+  if (outside.empty()) return static_cast<int>(cuts(farthest));
+  return static_cast<int>(cuts(std::max(farthest, longest_way_through(moved, blade, outside, most))));
 }
 
 double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, const EdgeFront& from,

@@ -47,6 +47,8 @@ class MapAt {
  public:
   /// For the surroundings of the blade at that time. `moved` must outlive the object.
   MapAt(const MovedBody& moved, const Blade& blade, double fraction);
+  /// For a box.
+  MapAt(const MovedBody& moved, const Blade& blade, double fraction, const Box3& box);
   MapAt(const MapAt&) = delete;
   MapAt& operator=(const MapAt&) = delete;
   /// The map.
@@ -64,7 +66,8 @@ class MapAt {
 /// The number of cuts in which a blade goes its way: ⌈farthest / (limit · finest)⌉, at most 64.
 /// farthest is the longest way of a point of the blade through the material, or past the nodes in
 /// the world where the former is more than twice the latter; finest is the smallest node spacing
-/// (§ 5.1). `fronts`: of the blade.
+/// (§ 5.1). A point that is outside the body before and after the step counts where it passes
+/// through. `fronts`: of the blade.
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts);
 
 /// The largest distance of the surface that the edge has swept, mapped into the material, from the

@@ -74,6 +74,15 @@ EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::v
   return result;
 }
 
+bool rests(const EdgeFront& edge, std::span<const EdgePoint> next) {
+  constexpr double least_way = 0.05;  // spacings; shorter ones make strips of slivers
+  std::vector<Vec3> to;
+  const EdgeFront front = refined(edge, next, to);
+  for (std::size_t i = 0; i < to.size(); ++i)
+    if ((to[i] - front.front.points[i].position).norm() >= least_way * nearest(next, front.at[i]).spacing) return false;
+  return true;
+}
+
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {
   auto [points, segments, at] = std::tie(edge.front.points, edge.front.segments, edge.at);
   for (std::size_t s = 0; s < segments.size() && segments.size() > 1;) {

@@ -38,6 +38,9 @@ std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at);
 /// lacks. `to` receives the next position of every point; points whose parameter `next` lacks move
 /// to that of the nearest one (downsampling). Both are ascending in the parameter.
 EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to);
+/// Whether every point of `next` is within a twentieth of a node spacing of its place in the front:
+/// nothing is to be cut. An edge at rest in a body that trembles would cut slivers off.
+bool rests(const EdgeFront& edge, std::span<const EdgePoint> next);
 /// Downsampling, after the step: removes points whose parameter `next` lacks, where they coincide
 /// with a neighbour.
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next);

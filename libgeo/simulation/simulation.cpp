@@ -80,6 +80,7 @@ struct Simulation::Impl {
   };
   // A front and its next position.
   struct Advance {
+    bool rests = false;           // the edge is where the front is: nothing is cut
     EdgeFront edge;               // with a point for each of `to`
     std::vector<Vec3> to;         // material positions
     std::vector<double> spacing;  // of the nodes there, model units
@@ -285,7 +286,7 @@ void Simulation::Impl::begin_first_cut(const TimeStep& step, std::optional<First
   first = FirstCut{static_cast<std::size_t>(blade - scene.blades.begin()), 0, {}};
   first->cuts = begin_cuts(moved, first->blade);
   first->plan = plan_cut(moved, first->blade, 1, first->cuts);
-  if (first->plan.advances.empty()) return;
+  if (first->plan.advances.empty() || first->plan.advances[0].rests) return;
   Advance& advance = first->plan.advances[0];
   begin(advance, stats);
   Stopwatch watch;
@@ -353,15 +354,18 @@ std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& 
 Simulation::Impl::PlannedCut Simulation::Impl::plan_cut(const MovedBody& moved, std::size_t b, int k, int cuts) {
   const Blade& blade = scene.blades[b];
   PlannedCut plan{map_edge(moved, b, double(k) / cuts), {}};
-  if (plan.runs.empty()) return plan;
+  plan.advances.resize(plan.runs.size());
+  for (std::size_t r = 0; r < plan.runs.size(); ++r) plan.advances[r].rests = rests(state.fronts[b][r], plan.runs[r]);
+  if (std::all_of(plan.advances.begin(), plan.advances.end(), [](const Advance& a) { return a.rests; })) return plan;
   std::optional<MapAt> start, half;
   parallel_invoke([&] { start.emplace(moved, blade, (k - 1.0) / cuts); },
                   [&] { half.emplace(moved, blade, (k - 0.5) / cuts); });
   for (std::size_t r = 0; r < plan.runs.size(); ++r) {
+    if (plan.advances[r].rests) continue;
     const EdgeFront& front = state.fronts[b][r];
     const FrontAnchor anchor(body.surface, *start, blade, front);
     for (EdgePoint& p : plan.runs[r]) p.material = anchor.corrected(p.at, p.material, p.spacing);
-    plan.advances.push_back(advance_of(front, plan.runs[r], *half, blade, anchor));
+    plan.advances[r] = advance_of(front, plan.runs[r], *half, blade, anchor);
   }
   return plan;
 }
@@ -376,6 +380,7 @@ void Simulation::Impl::make_cut(std::size_t b, PlannedCut plan, FrameStats& stat
   for (std::size_t r = 0; r < plan.runs.size(); ++r) {
     Advance& advance = plan.advances[r];
     stats.sheet.retreating += advance.retreating;
+    if (advance.rests) continue;
     ++stats.fronts;
     if (!advance.is_begun) begin(advance, stats);
     if (!advance.split) continue;

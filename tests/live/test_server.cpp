@@ -28,11 +28,13 @@ namespace {
 const std::string token = "0123456789abcdef";
 
 struct Served {
+  explicit Served(const std::string& address = "127.0.0.1")
+      : server({address, 0, token, "<html>page</html>", "a b/c"}, inbox) {}
   Inbox inbox;
-  Server server{{"127.0.0.1", 0, token, "<html>page</html>", "a b/c"}, inbox};
+  Server server;
   int port() const {
     const std::string url = server.url();
-    return std::stoi(url.substr(url.find(':', 7) + 1));
+    return std::stoi(url.substr(url.rfind(':') + 1));
   }
   std::string host() const { return "127.0.0.1:" + std::to_string(port()); }
 };
@@ -115,6 +117,19 @@ TEST_CASE("only the printed address answers") {
   CHECK_THROWS_AS(Server({"nowhere", 0, token, "", ""}, s.inbox), geo::InputError);
 }
 
+TEST_CASE("a server at all interfaces answers under each of its addresses") {
+  for (const std::string address : {"0.0.0.0", "::"}) {
+    Served s(address);
+    const std::string port = ":" + std::to_string(s.port());
+    CHECK(s.server.url() ==
+          "http://" + std::string(address == "::" ? "[::1]" : "127.0.0.1") + port + "/" + token + "/");
+    for (const std::string name : {"127.0.0.1", "localhost"})
+      CHECK(answer(s, "/" + token + "/", name + port).first == 200);
+    for (const std::string name : {"[::ffff:127.0.0.1]", "0.0.0.0", "[::1]"})  // the client has come to another one
+      CHECK(answer(s, "/" + token + "/", name + port).first == 403);
+  }
+}
+
 TEST_CASE("a stroke is late by the time that its begin has waited") {
   Inbox inbox;
   const auto before = std::chrono::steady_clock::now();
@@ -192,6 +207,46 @@ TEST_CASE("nodes, stress and graph go to the page that wants them") {
   while (s.server.wants_nodes() && std::chrono::steady_clock::now() < end)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   CHECK_FALSE(s.server.wants_nodes());
+}
+
+TEST_CASE("a page is sent the graph as it is when asked, and none that another page has asked for before") {
+  Served s;
+  const auto with_graph = [](std::uint64_t n, std::uint32_t end) {
+    auto x = snapshot(n);
+    x->graph = std::make_shared<std::vector<std::pair<std::uint32_t, std::uint32_t>>>(1, std::pair(0u, end));
+    x->graph_number = end;
+    return x;
+  };
+  Client a(s.server.url());
+  a.send(R"({"want":{"graph":true}})");
+  wait_for<Command>(s.inbox, 1);
+  s.server.publish(with_graph(1, 1));
+  CHECK(a.next().kind == 4);
+  Client b(s.server.url());
+  CHECK(b.next().kind == 1);
+  b.send(R"({"want":{"graph":true}})");
+  wait_for<Command>(s.inbox, 1);
+  CHECK(s.server.graphs_wanted() == 2);
+  b.acknowledge();
+  CHECK_FALSE(b.has_message(100));
+  s.server.publish(with_graph(2, 2));
+  CHECK(b.next().kind == 4);
+  CHECK(b.page.edges == std::vector<std::array<std::uint32_t, 2>>{{0, 2}});
+}
+
+TEST_CASE("a page that sends too many messages is still sent frames") {
+  Served s;
+  s.server.publish(snapshot(1));
+  Client a(s.server.url());
+  CHECK(a.next().kind == 1);
+  for (std::uint64_t n = 2; n <= 4; ++n) {
+    const std::string confirmation = "{\"ack\":" + std::to_string(a.page.sequence) + "}";
+    for (int i = 0; i < 300; ++i) a.send("{\"undo\":true}");
+    a.send(confirmation);
+    s.server.publish(snapshot(n));
+    while (a.next().kind == 5) CHECK(a.page.notice.contains("error"));
+    CHECK(a.page.statistics["number"] == n);
+  }
 }
 
 TEST_CASE("hostile messages are refused with a reason, and the page goes on") {

@@ -85,6 +85,36 @@ TEST_CASE("a blade that is pulled out of its cut leaves it as it is") {
   CHECK(crack_area(sim.body().surface) == Approx(0.6).epsilon(0.02));
 }
 
+TEST_CASE("a blade that jumps over the body in one step has cut it") {
+  Simulation sim(scene_of("", "[0, 0, 0.507, 4, 0, 0, 1, 0], [0.05, 0, 0.507, -3, 0, 0, 1, 0]", "0.5"),
+                 make_block({1, 1, 1}, 0.2));
+  run(sim, 1);
+  CHECK(find_pieces(sim.body().surface).count == 2);
+  CHECK(crack_area(sim.body().surface) == Approx(1).epsilon(1e-3));
+}
+
+TEST_CASE("an edge at rest in material that creeps across it cuts seldom, and is never far from its front") {
+  constexpr double spacing = 0.25;
+  Simulation sim(scene_of("velocity = [0, -0.06, 0]",
+                          "[0, 0, 0.507, 1.2, 0, 0, 1, 0], [0.4, 0, 0.507, 0.4, 0, 0, 1, 0], "
+                          "[4.4, 0, 0.507, 0.4, 0, 0, 1, 0]",
+                          "0.5"),
+                 make_block({1, 1, 1}, 0.2));
+  run(sim, 2);
+  const FrameStats work = run(sim, 14);
+  CHECK(work.fronts > 3);
+  CHECK(work.fronts <= 8);  // of 70 time steps
+  const double crept = -sim.state().motion.displacement[0].y();
+  CHECK(crept > 0.2 * spacing);
+  REQUIRE(sim.state().fronts[0].size() == 1);
+  for (const auto& p : sim.state().fronts[0][0].front.points) {
+    INFO("front point " << p.position.transpose());
+    const double along = (p.position.x() + 0.3) / 1.6;  // of the blade
+    CHECK(std::abs(p.position.y() - (0.507 + 0.01 * along + crept)) < 0.06 * spacing);
+    CHECK(std::abs(p.position.z() - (0.4 + 0.013 * along)) < 0.06 * spacing);
+  }
+}
+
 TEST_CASE("a blade that turns by an acute angle cuts on") {
   Simulation sim(scene_of("",
                           "[0, 0, 0.407, 1.2, 0, 0, 1, 0], [0.4, 0, 0.403, 0.4, 0, 0, 1, 0], "

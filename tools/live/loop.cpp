@@ -117,7 +117,9 @@ class Loop {
     return std::visit([&](const auto& c) { return obey_command(page, c); }, command);
   }
   static bool is_touch(const Command& command) {
-    return std::holds_alternative<Stroke>(command) || std::holds_alternative<Grab>(command) ||
+    const auto* stroke = std::get_if<Stroke>(&command);
+    const auto* grab = std::get_if<Grab>(&command);
+    return (stroke && stroke->phase == Phase::begin) || (grab && grab->phase == Phase::begin) ||
            std::holds_alternative<Pin>(command) || std::holds_alternative<Set>(command) ||
            std::holds_alternative<Step>(command);
   }

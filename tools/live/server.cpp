@@ -48,9 +48,19 @@ bool same_secret(std::string_view a, std::string_view b) {
   return different == 0;
 }
 
-std::string host_text(const net::ip::address& address, int port) {
-  const std::string text = address.to_string();
-  return (address.is_v6() ? "[" + text + "]" : text) + ":" + std::to_string(port);
+// The address of an interface as clients write it: IPv4 in IPv6 is IPv4.
+net::ip::address plain_address(const net::ip::address& address) {
+  const bool mapped = address.is_v6() && address.to_v6().is_v4_mapped();
+  return mapped ? net::ip::make_address_v4(net::ip::v4_mapped, address.to_v6()) : address;
+}
+
+std::string host_name(const net::ip::address& address) {
+  return address.is_v6() ? "[" + address.to_string() + "]" : address.to_string();
+}
+
+// Whether a request's host is a name with a port. Clients leave out HTTP's own port.
+bool is_host(std::string_view host, const std::string& name, int port) {
+  return host == name + ":" + std::to_string(port) || (port == 80 && host == name);
 }
 
 // A file name without characters that mean anything to a shell or a browser.
@@ -133,8 +143,8 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
       notices_.pop_front();
     } else if (awaited_ || !s) {
       return;
-    } else if (s->graph && s->graph_number > graph_sent_ && asked_graph_) {
-      graph_sent_ = s->graph_number, asked_graph_ = false;
+    } else if (s->graph && graph_asked_ && s->graph_number >= *graph_asked_) {
+      graph_asked_.reset();
       awaited_ = ++sequence_;
       message_ = encode_graph(*s, sequence_);
     } else if (s->number != sent_) {
@@ -177,7 +187,7 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     beast::get_lowest_layer(ws_).socket().close(ignored);
   }
   void take() {
-    if (!within_rate()) return;
+    if (acknowledges() || !within_rate()) return;
     if (!ws_.got_text()) return tell("error", "a message is text, not bytes");
     try {
       const auto data = buffer_.data();
@@ -186,21 +196,36 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
       tell("error", e.what());
     }
   }
+  // Takes an acknowledgement, which is short. None is left out, since no frame would follow.
+  bool acknowledges() {
+    constexpr std::size_t longest = 64;
+    if (buffer_.size() > longest || !ws_.got_text()) return false;
+    try {
+      const auto data = buffer_.data();
+      const Command command = read_command({static_cast<const char*>(data.data()), data.size()});
+      const auto* ack = std::get_if<Acknowledge>(&command);
+      if (ack) acknowledged(ack->sequence);
+      return ack != nullptr;
+    } catch (const BadMessage&) {
+      return false;
+    }
+  }
   bool within_rate() {
     const auto now = std::chrono::steady_clock::now();
     if (now - second_ > std::chrono::seconds(1)) second_ = now, messages_ = 0;
     if (++messages_ == most_messages + 1) tell("error", "more than 240 messages a second are left out");
     return messages_ <= most_messages;
   }
+  void acknowledged(std::uint32_t sequence) {
+    if (awaited_ == sequence) awaited_.reset();
+    pump();
+  }
   void obey(Command command) {
-    if (const auto* ack = std::get_if<Acknowledge>(&command)) {
-      if (awaited_ == ack->sequence) awaited_.reset();
-      return pump();
-    }
+    if (const auto* ack = std::get_if<Acknowledge>(&command)) return acknowledged(ack->sequence);
     if (const auto* want = std::get_if<Want>(&command)) {
       if (want->nodes) want_nodes(*want->nodes);
       if (want->stress) want_stress(*want->stress);
-      if (want->graph) asked_graph_ = true, ++hub_.graphs_wanted;
+      if (want->graph) graph_asked_ = ++hub_.graphs_wanted;
     }
     if (!hub_.inbox.put({id_, std::move(command)})) tell("error", "the simulation is busy; the message is left out");
   }
@@ -213,11 +238,12 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
   beast::flat_buffer buffer_;
   std::deque<std::string> notices_;
   std::string message_;
-  bool joined_ = false, writing_ = false, nodes_ = false, stress_ = false, asked_graph_ = false;
+  bool joined_ = false, writing_ = false, nodes_ = false, stress_ = false;
   std::uint32_t sequence_ = 0;
   std::optional<std::uint32_t> awaited_;  // number of the message that is not confirmed
   std::shared_ptr<const Topology> known_;
-  std::uint64_t sent_ = 0, graph_sent_ = 0;
+  std::uint64_t sent_ = 0;
+  std::optional<std::uint64_t> graph_asked_;  // number of the request that is not answered
   std::chrono::steady_clock::time_point second_;
   int messages_ = 0;
 };
@@ -327,7 +353,8 @@ void Server::Impl::listen() {
   if (!error) acceptor.set_option(net::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(net::socket_base::max_listen_connections, error);
-  if (error) throw geo::InputError(place + ": cannot listen there: " + error.message() + "; give another --port");
+  if (error)
+    throw geo::InputError(place + ": cannot listen there: " + error.message() + "; give another --address or --port");
   port = acceptor.local_endpoint().port();
   accept();
 }
@@ -354,8 +381,8 @@ bool Server::Impl::right_host(std::string_view host, const tcp::socket& socket) 
   error_code error;
   const auto local = socket.local_endpoint(error);
   if (error) return false;
-  return host == host_text(local.address(), port) ||
-         (local.address().is_loopback() && host == "localhost:" + std::to_string(port));
+  const auto address = plain_address(local.address());
+  return is_host(host, host_name(address), port) || (address.is_loopback() && is_host(host, "localhost", port));
 }
 
 void Server::Impl::deliver() {
@@ -391,8 +418,8 @@ Server::~Server() {
 
 std::string Server::url() const {
   const auto address = impl_->acceptor.local_endpoint().address();
-  const auto shown = address.is_unspecified() ? net::ip::make_address("127.0.0.1") : address;
-  return "http://" + host_text(shown, impl_->port) + "/" + impl_->options.token + "/";
+  const auto shown = address.is_unspecified() ? net::ip::make_address(address.is_v6() ? "::1" : "127.0.0.1") : address;
+  return "http://" + host_name(shown) + ":" + std::to_string(impl_->port) + "/" + impl_->options.token + "/";
 }
 
 void Server::publish(std::shared_ptr<const Snapshot> snapshot) {

@@ -170,6 +170,11 @@ void Session::obey(const Pin& pin) {
   const double radius = pin.radius > 0 ? pin.radius : coarsest_spacing(run_.body());
   geo::Grip grip;
   grip.lo = x - geo::Vec3::Constant(radius), grip.hi = x + geo::Vec3::Constant(radius);
+  const auto& nodes = run_.body().nodes.position;  // a pin holds one at least
+  const auto distance = [&](const geo::Vec3& p) { return (p - x).cwiseAbs().maxCoeff(); };
+  const geo::Vec3& nearest_node = *std::min_element(
+      nodes.begin(), nodes.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  grip.lo = grip.lo.cwiseMin(nearest_node), grip.hi = grip.hi.cwiseMax(nearest_node);
   pins_.push_back({run_.add_grip(std::move(grip)), x, world_point(pin.spot), radius});
 }
 

@@ -116,6 +116,10 @@ function listenToKeys() {
   });
 }
 function listenToControls() {
+  // A control that was clicked does not keep the focus: the space bar pauses. The keyboard's own focus stays.
+  document.addEventListener("click", (e) => {
+    if (e.detail > 0) e.target.closest("button, summary, label, input[type=checkbox]") && document.activeElement.blur();
+  });
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
   for (const key of ["skin", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "look"]) {
@@ -131,7 +135,7 @@ function listenToControls() {
 function followAddress() {
   for (const [key, value] of new URLSearchParams(location.hash.slice(1))) {
     if (key in home) home[key] = view[key] = Number(value);
-    else if (key in state) state[key] = value === "true" || value === "false" ? value === "true" : Number.isFinite(Number(value)) ? Number(value) : value;
+    else if (key in state) set(key, value === "true" || value === "false" ? value === "true" : Number.isFinite(Number(value)) ? Number(value) : value);
   }
 }
 

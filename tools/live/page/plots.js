@@ -75,7 +75,7 @@ function showFigures() {
   $("undo").disabled = !(stats.undo > 0);
   $("pause").setAttribute("aria-pressed", String(!!stats.paused));
   $("pause").querySelector("span").textContent = stats.paused ? "Go on" : "Pause";
-  const slow = !stats.paused && stats.sim_rate !== undefined && stats.sim_rate < 0.95;
+  const slow = !stats.paused && stats.fps > 0 && stats.sim_rate < 0.95;
   $("slow").hidden = !slow && !stats.paused;
   $("slow").textContent = stats.paused ? "Paused" : slow ? `Slower than real time: ${Math.round(100 * stats.sim_rate)} %` : "";
   showValues(stats.set);

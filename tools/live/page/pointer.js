@@ -1,5 +1,6 @@
 // Mouse, touch and pen: one finger or the left button has the tool, two fingers or the right button have the eye.
 const pointers = new Map();
+const spent = new Set();  // pointers that have drawn a stroke: after Escape, what is left of the drag does nothing
 const slop = 5;  // pixels that a pointer moves before a knife cuts: a click does not
 
 function listenToPointer() {
@@ -13,7 +14,7 @@ function listenToPointer() {
     if (pointers.size > 1) return pending = null, endStroke();  // a second finger: the eye moves
     const tool = e.button === 0 && !e.shiftKey && !e.altKey && !e.ctrlKey;
     if (!tool || state.tool === "orbit") return;
-    if (state.tool === "grab") beginStroke(e.offsetX, e.offsetY, e.pointerId);
+    if (state.tool === "grab") beginStroke(e.offsetX, e.offsetY, e.pointerId) && spent.add(e.pointerId);
     else pending = { x: e.offsetX, y: e.offsetY, id: e.pointerId };
   });
   canvas.addEventListener("pointermove", (e) => {
@@ -30,10 +31,10 @@ function listenToPointer() {
       const { x, y, id } = pending;
       pending = null;
       pointers.set(e.pointerId, e);
-      if (beginStroke(x, y, id)) return moveStroke(e.offsetX, e.offsetY);
+      if (beginStroke(x, y, id)) return spent.add(id), moveStroke(e.offsetX, e.offsetY);
     }
     pointers.set(e.pointerId, e);
-    moveEye(e, dx, dy);
+    if (pointers.size > 1 || !spent.has(e.pointerId)) moveEye(e, dx, dy);
   });
   // Two fingers turn, zoom and move at once; with the shift key or the middle button the eye moves sideways.
   const moveEye = (e, dx, dy) => {
@@ -46,7 +47,7 @@ function listenToPointer() {
     else turn(0.006 * dx, 0.006 * dy);
   };
   const up = (e) => {
-    pointers.delete(e.pointerId);
+    pointers.delete(e.pointerId), spent.delete(e.pointerId);
     if (hand.stroke && hand.stroke.pointer === e.pointerId) {
       if (e.type === "pointerup") moveStroke(e.offsetX, e.offsetY);
       endStroke();

@@ -10,7 +10,8 @@ const live = {
   frame: null,     // the newest frame that is not yet drawn
   time: 0, revision: -1, vertices: 0, nodes: 0,
   position: new Float32Array(0),  // shown coordinates
-  node: null, stress: null, stressMost: 0, pairs: null,
+  node: null, stress: null, stressMost: 0,
+  pairs: null, asked: false, stale: false,  // edges of the graph; whether an answer is due; whether the surface has changed since it was asked for
 };
 
 const toShown = (p) => new THREE.Vector3(...p.map((x, k) => (x - about.middle[k]) / about.unit));
@@ -20,6 +21,7 @@ const upward = () => new THREE.Vector3(0, about.y_up ? 1 : 0, about.y_up ? 0 : 1
 function stateArrived(arrived) {
   const told = arrived.about, first = live.told === null;
   live.told = told, live.revision = arrived.revision, live.vertices = arrived.vertices, live.pairs = null;
+  askForGraph();
   if (first) {
     const [lo, hi] = told.box;
     about.y_up = told.up === "y";
@@ -31,7 +33,8 @@ function stateArrived(arrived) {
 }
 function deltaArrived(delta) {
   if (delta.from !== live.revision) throw new Error("A change is missing");
-  live.revision = delta.to, live.vertices = delta.vertices, live.pairs = null;
+  live.revision = delta.to, live.vertices = delta.vertices;
+  askForGraph();
   surface.change(delta);
 }
 function frameArrived(frame, time) {
@@ -42,8 +45,16 @@ function frameArrived(frame, time) {
   redraw();
 }
 function graphArrived(pairs) {
-  live.pairs = pairs.slice();
+  live.pairs = pairs.slice(), live.asked = false;
+  if (live.stale) askForGraph();
   changed();
+}
+// Each change of the surface may change the graph. While an answer is due, the next request waits for it.
+function askForGraph() {
+  live.stale = live.asked;
+  if (!state.edges || live.asked) return;
+  live.asked = true;
+  send({ want: { graph: true } });
 }
 
 // 16-bit coordinates of a box, as shown.
@@ -68,7 +79,7 @@ function takeFrame() {
 
 function sendWants(anew) {
   const wants = { nodes: state.nodes || state.stress || state.edges, stress: state.stress, graph: state.edges };
-  if (anew || JSON.stringify(wants) !== live.wants) send({ want: wants });
+  if (anew || JSON.stringify(wants) !== live.wants) live.asked = state.edges, live.stale = false, send({ want: wants });
   live.wants = JSON.stringify(wants);
 }
 // After any change of what is shown.

@@ -9,6 +9,7 @@ function rayAt(x, y) {
 }
 // The sphere around the body as it is now.
 function bodySphere() {
+  surface.arrive();
   const lo = new THREE.Vector3(Infinity, Infinity, Infinity), hi = lo.clone().negate(), p = new THREE.Vector3();
   for (let v = 0; v < live.vertices; v++)
     if (surface.corners.first[v] >= 0) p.fromArray(live.position, 3 * v), lo.min(p), hi.max(p);

@@ -52,7 +52,7 @@ function receive(buffer) {
   const r = new Reader(buffer), kind = r.u8(), flags = r.u8(), version = r.u16(), sequence = r.u32(), time = r.f64();
   if (version !== 1) throw new Error("this page is of another version than the program: load it again");
   wire.bytes += buffer.byteLength, wire.messages++;
-  if (kind === 5) notice(r.json(buffer.byteLength - 16));
+  if (kind === 5) return notice(r.json(buffer.byteLength - 16));  // needs no acknowledgement
   if (kind === 4) graphArrived(r.array(Uint32Array, 2 * r.u32()));
   if (kind === 1) stateArrived(readState(r));
   if (kind === 2) deltaArrived(readDelta(r));
@@ -90,7 +90,7 @@ function connect() {
   socket.binaryType = "arraybuffer";
   wire.socket = socket;
   socket.onopen = () => {
-    wire.open = true, wire.wait = 500;
+    wire.open = true, wire.wait = 500, wire.sequence = -1;
     sendWants(true), connection("");
   };
   socket.onmessage = (e) => {

@@ -41,13 +41,22 @@ class World {
       scene.add(this.floor);
     }
     this.things.remove(...this.things.children);
-    for (const o of live.told.obstacles ?? []) {
-      const geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(Float32Array.from(o.vertices, (x, i) => (x - about.middle[i % 3]) / about.unit), 3));
-      geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(o.triangles), 1));
-      const mesh = new THREE.Mesh(geometry, new THREE.MeshPhongMaterial({ color: 0x9aa3ad, specular: 0x222222, side: THREE.DoubleSide, flatShading: true }));
-      mesh.castShadow = mesh.receiveShadow = true, mesh.matrixAutoUpdate = false, mesh.renderOrder = 2;
-      this.things.add(mesh);
-    }
+    for (const o of live.told.obstacles ?? []) this.things.add(o.normal ? this.plane(o) : this.solid(o));
+  }
+  solid(o) {
+    const geometry = new THREE.BufferGeometry().setAttribute("position", new THREE.BufferAttribute(Float32Array.from(o.vertices, (x, i) => (x - about.middle[i % 3]) / about.unit), 3));
+    geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(o.triangles), 1));
+    const mesh = new THREE.Mesh(geometry, new THREE.MeshPhongMaterial({ color: 0x9aa3ad, specular: 0x222222, side: THREE.DoubleSide, flatShading: true }));
+    mesh.castShadow = mesh.receiveShadow = true, mesh.matrixAutoUpdate = false, mesh.renderOrder = 2;
+    return mesh;
+  }
+  // A plane as a pale disc beside the body, which is seen through it.
+  plane(o) {
+    const normal = new THREE.Vector3(...o.normal).normalize(), turned = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
+    const geometry = new THREE.CircleBufferGeometry(1.2, 64).applyQuaternion(turned).translate(...normal.clone().multiplyScalar(toShown(o.point).dot(normal)).toArray());
+    const mesh = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x6f7c8a, transparent: true, opacity: 0.28, side: THREE.DoubleSide, depthWrite: false }));
+    mesh.matrixAutoUpdate = false, mesh.renderOrder = 7;
+    return mesh;
   }
   // A disc that fades into the background, lighter in the middle, with rings to tell distances.
   floorMaterial() {

@@ -5,11 +5,13 @@ wound: the scalpel's edge stands on the skin as it is drawn, and passes over an 
 model: a model without a scene waits for the first hand, and again after a reset.
 pin: it holds its place while the body is shaken. sliders: the material has the values that they show.
 reconnect: a page that lost its connection, and one that is loaded again, show the whole state.
+paused: a stroke drawn without a step cuts at the next one; keys after clicks, Escape in a stroke, the graph after a cut, a hidden page.
+press: obstacles, a plane among them, are drawn, also in the view that the address asks for.
 Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
 """
 import time
 from hand import along
-from page_session import Session, check, hand, run
+from page_session import Session, check, hand, models, run
 
 # The triangles that the page has: how many, how many on cracks, and sums of their vertices' numbers and positions.
 SHOWN = """(() => {
@@ -229,6 +231,70 @@ def reconnect():
     hand.button("#undo")
     hand.wait("live.stats.undo === 0")
     check(f"reconnect: after undo {shown()}, not {whole}", shown()[:2] == whole[:2])
+    hand.step()
+    session.done()
+
+
+def paused():
+    session = Session("polyp")
+    session.begin()
+    hand.key("e")
+    hand.wait("live.pairs && inside.edges.lines.visible")
+    whole = hand.run("live.pairs.length")
+    way = along(hand.place([-1.0, 0.3, -0.02]), hand.place([1.0, -0.3, 0.03]), steps=12)
+    hand.drag(way)
+    hand.finish()
+    said = {key: hand.stats()[key] for key in ("pieces", "undo", "refused")}
+    check(f"paused: a stroke from side to side, then steps: {said}", said["pieces"] == 2 and said["undo"] == 1)
+    hand.wait(f"live.pairs && !live.asked && live.pairs.length !== {whole}")
+    check("paused: no graph is drawn after a cut", hand.run("inside.edges.lines.visible"))
+    hand.wait("!$('undo').disabled")  # figures are drawn ten times a second
+    hand.button("#undo")
+    hand.wait(f"live.pairs && !live.asked && live.pairs.length === {whole}")
+    hand.key("e")
+
+    hand.button("#reset")
+    hand.key(" ")
+    hand.wait("!live.stats.paused && live.time > 0")
+    hand.tool("knife")
+    hand.key(" ")
+    hand.wait("live.stats.paused")
+
+    eye = hand.run("[view.azimuth, view.elevation]")
+    hand.drag(way[:6], release=False)
+    hand.key("Escape")
+    hand.wait("hand.stroke === null")
+    hand.drag(way[6:10])
+    check("paused: after Escape the drag turns the view", hand.run("[view.azimuth, view.elevation]") == eye)
+    hand.finish()
+
+    # Hidden, as in a tab behind another one: a notice comes, and the page is seen again.
+    hand.key("r")
+    hand.wait("live.time === 0")
+    hand.run("window.covered = true; Object.defineProperty(document, 'hidden', { configurable: true, get: () => window.covered }); 1")
+    hand.key(" ")
+    time.sleep(0.5)  # the page is sent one frame, which it does not confirm
+    hand.run("send({ undo: true })")
+    hand.wait("!$('notice').hidden && $('notice').classList.contains('wrong')")
+    hand.run("window.covered = false; document.dispatchEvent(new Event('visibilitychange')); 1")
+    at = hand.run("live.time")
+    hand.wait(f"live.time > {at} + 0.2")
+    hand.key(" ")
+    hand.wait("live.stats.paused")
+    session.done()
+
+
+def press():
+    session = Session("press", "--set", f"obstacle.1.mesh={models}/ball.ply", "--set", "body.nodes=300")
+    session.begin()
+    drawn = hand.run("world.things.children.map((mesh) => mesh.geometry.index.count)")
+    check(f"press: obstacles of {drawn} corners are drawn", len(drawn) == 2 and min(drawn) > 100)
+    plate = hand.run("world.things.children[0].geometry.attributes.position.array.slice(0, 3)")
+    check(f"press: the plate is at {plate}", abs(hand.run(f"toWorld(new THREE.Vector3({plate['0']}, {plate['1']}, {plate['2']}))")[2]) < 1e-3)
+    hand.run("location.hash = '#shadows=false&edges=true&look=tissue&distance=3'")
+    hand.reload()
+    hand.wait("live.pairs && inside.edges.lines.visible && state.skin < 1")
+    check("press: the address's controls", hand.run("$('look').value === 'tissue' && $('edges').checked && !$('shadows').checked"))
     hand.step()
     session.done()
 

@@ -53,7 +53,8 @@ class World {
   // A plane as a pale disc beside the body, which is seen through it.
   plane(o) {
     const normal = new THREE.Vector3(...o.normal).normalize(), turned = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
-    const geometry = new THREE.CircleBufferGeometry(1.2, 64).applyQuaternion(turned).translate(...normal.clone().multiplyScalar(toShown(o.point).dot(normal)).toArray());
+    const middle = normal.clone().multiplyScalar(toShown(o.point).dot(normal));
+    const geometry = new THREE.CircleBufferGeometry(1.2, 64).applyMatrix(new THREE.Matrix4().compose(middle, turned, new THREE.Vector3(1, 1, 1)));
     const mesh = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: 0x6f7c8a, transparent: true, opacity: 0.28, side: THREE.DoubleSide, depthWrite: false }));
     mesh.matrixAutoUpdate = false, mesh.renderOrder = 7;
     return mesh;

@@ -498,6 +498,19 @@ stops)
     kill -STOP $pid 2>/dev/null && kill -CONT $pid
     wait $pid && rm address.txt || fail "kerf-live, stopped and continued, does not end: $(cat said.txt)"
   done
+  # The terminal is closed: what was recorded is written. With nohup the run goes on. A bar is drawn while it begins alone.
+  for hangup in default ignore; do
+    env --$hangup-signal=HUP kerf-live block.ply --no-browser --progress always --record closed.toml >address.txt 2>said.txt &
+    pid=$!
+    for wait in $(seq 1000); do [ -s address.txt ] && break || sleep 0.01; done
+    sleep 0.5
+    kill -HUP $pid
+    [ $hangup = default ] || { sleep 0.3 && kill -INT $pid || fail "kerf-live ends with its terminal, in spite of nohup"; }
+    wait $pid || fail "kerf-live without its terminal: $(cat said.txt)"
+    [ -s closed.toml ] || fail "kerf-live records nothing where its terminal is closed"
+    [ "$(tr '\r' '\n' <said.txt | grep -c ' % $')" = 0 ] || fail "kerf-live draws a bar while it runs: $(cat -v said.txt)"
+    rm address.txt closed.toml
+  done
   # A bar where it is asked for, gone before anything else is said.
   for line in "kerf-graph --surface block.ply nodes.pcd -o y.kerf" "kerf-update ok.kerf --surface cut.ply -o y.kerf"; do
     kerf-sample -q block.ply --spacing 6% -o nodes.pcd && $line -v --progress always 2>bar.txt || fail "$line: $(cat bar.txt)"

@@ -187,8 +187,12 @@ def sliders():
     session.pause()
     hand.button("#menu")
     hand.wait("!document.body.classList.contains('wide')")
+
+    def box(name):
+        return hand.run(f"(() => {{ const e = $('{name}'); e.scrollIntoView({{ block: 'center' }}); const r = e.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }})()")
+
     for name in ("young", "gravity", "friction", "damping"):
-        x, y, w, h = hand.run(f"(() => {{ const e = $('{name}'); e.scrollIntoView({{ block: 'center' }}); const r = e.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }})()")
+        x, y, w, h = box(name)
         before = hand.stats()["set"][name]
         hand.drag(along([x + w / 2, y + h / 2], [x + 0.8 * w, y + h / 2], steps=3))
         hand.step()  # values change between two frames
@@ -198,9 +202,12 @@ def sliders():
         at = hand.run(f"Number($('{name}').value)")
         check(f"sliders: {name} is at {at}, not where the pointer left it", 0.6 < at < 0.95)
     check(f"sliders: {hand.stats()['set']}", hand.run("live.stats.set.young > live.told.young && length(live.stats.set.gravity) > length(live.told.gravity)"))
-    # An arrow key on a slider moves the slider, and not the eye.
+    # An arrow key on a slider that was clicked moves the slider, and not the eye.
+    x, y, w, h = box("young")
+    hand.click(x + 0.6 * w, y + h / 2)
+    hand.step()
+    hand.wait("Math.abs(toSlider('young', live.stats.set.young) - 0.6) < 0.05")
     eye, young = hand.run("view.azimuth"), hand.stats()["set"]["young"]
-    hand.run("$('young').focus()")
     hand.key("ArrowLeft")
     hand.step()
     hand.wait(f"live.stats.set.young < {young}")

@@ -118,7 +118,7 @@ function listenToKeys() {
 function listenToControls() {
   // A control that was clicked does not keep the focus: the space bar pauses. The keyboard's own focus stays.
   document.addEventListener("click", (e) => {
-    if (e.detail > 0) e.target.closest("button, summary, label, input[type=checkbox]") && document.activeElement.blur();
+    if (e.detail > 0 && document.activeElement.matches("button, summary, input[type=checkbox]")) document.activeElement.blur();
   });
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);

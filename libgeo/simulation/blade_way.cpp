@@ -60,21 +60,42 @@ bool has_in_order(const Complex& surface, FaceId f, VertexId a, VertexId b) {
   return false;
 }
 
-// The longest way of those blade points `outside` the body before and after a step that pass
-// through it. Looks at steps of `most`.
-double longest_way_through(const MovedBody& moved, const Blade& blade, std::span<const std::size_t> outside,
-                           double most) {
+// The way of a place of the blade in a step, in the world.
+struct PlaceWay {
+  Vec3 from, to;
+  double length() const { return (to - from).norm(); }
+};
+
+// Places on the segments of a blade whose ends are `outside` the body before and after a step: at
+// most `spacing` apart, and at most 64 of a segment.
+std::vector<PlaceWay> ways_outside(const MovedBody& moved, const Blade& blade, const std::vector<std::uint8_t>& outside,
+                                   double spacing) {
   const Pose from = blade.motion.at(moved.begin), to = blade.motion.at(moved.end);
+  const std::size_t n = blade.points.size();
+  std::vector<PlaceWay> ways;
+  for (std::size_t i = 0; i + 1 < n + (blade.closed ? 1 : 0); ++i) {
+    if (!outside[i] || !outside[(i + 1) % n]) continue;
+    const double length = (blade.points[(i + 1) % n] - blade.points[i]).norm();
+    const int parts = static_cast<int>(std::clamp(std::ceil(length / spacing), 1.0, 64.0));
+    for (int k = 0; k <= parts; ++k) {
+      const Vec3 p = blade.points[i] + double(k) / parts * (blade.points[(i + 1) % n] - blade.points[i]);
+      ways.push_back({from * p, to * p});
+    }
+  }
+  return ways;
+}
+
+// The longest of those ways that lead through the body. Looks at steps of `most`.
+double longest_way_through(const MovedBody& moved, const Blade& blade, std::span<const PlaceWay> ways, double most) {
   Box3 swept;
-  for (const std::size_t i : outside) swept.add(from * blade.points[i]), swept.add(to * blade.points[i]);
+  for (const PlaceWay& w : ways) swept.add(w.from), swept.add(w.to);
   const MapAt after(moved, blade, 1, swept);
   InverseDeformation::VertexCache memory;
   double longest = 0;
-  for (const std::size_t i : outside) {
-    const Vec3 start = from * blade.points[i], way = to * blade.points[i] - start;
-    const double steps = std::min(std::ceil(way.norm() / most), most_cuts);
-    for (int k = 1; k < steps && way.norm() > longest; ++k)
-      if (after.map().to_material(start + k / steps * way, memory).in_support) longest = way.norm();
+  for (const PlaceWay& w : ways) {
+    const double steps = std::min(std::ceil(w.length() / most), most_cuts);
+    for (int k = 0; k <= steps && w.length() > longest; ++k)
+      if (after.map().to_material(w.from + k / steps * (w.to - w.from), memory).in_support) longest = w.length();
   }
   return longest;
 }
@@ -122,11 +143,11 @@ MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction, const 
 
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts) {
   const auto& spacing = moved.body.nodes.spacing;
-  const double most = blade.limit * *std::min_element(spacing.begin(), spacing.end());
+  const double finest = *std::min_element(spacing.begin(), spacing.end()), most = blade.limit * finest;
   if (longest_way(moved, blade) <= most) return 1;
   const MapAt before(moved, blade, 0), after(moved, blade, 1);
   std::vector<double> ways(blade.points.size(), 0);
-  std::vector<double> ways_outside(ways.size(), 0);
+  std::vector<std::uint8_t> outside(ways.size(), 0);  // before and after
   parallel_for(ways.size(), 4, [&](std::size_t begin, std::size_t end) {
     InverseDeformation::VertexCache before_memory, after_memory;
     for (std::size_t i = begin; i < end; ++i) {
@@ -134,8 +155,10 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
       const Vec3 from = before.pose() * blade.points[i], to = after.pose() * blade.points[i];
       const auto a = before.map().to_material(from, before_memory, place ? &*place : nullptr);
       const auto b = after.map().to_material(to, after_memory, &a.position);
+      outside[i] = !a.in_support && !b.in_support;
+      if (outside[i]) continue;
       if (!a.in_support || !b.in_support) {
-        (a.in_support || b.in_support ? ways : ways_outside)[i] = (to - from).norm();
+        ways[i] = (to - from).norm();
         continue;
       }
       const double past = (to - from - moved.way.of(a.nearest)).norm(), through = (b.position - a.position).norm();
@@ -144,11 +167,10 @@ int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const E
   });
   const auto cuts = [&](double way) { return std::clamp(std::ceil(way / most), 1.0, most_cuts); };
   const double farthest = *std::max_element(ways.begin(), ways.end());
-  std::vector<std::size_t> outside;  // points that may need more cuts
-  for (std::size_t i = 0; i < ways.size(); ++i)
-    if (cuts(ways_outside[i]) > cuts(farthest)) outside.push_back(i);
-  if (outside.empty()) return static_cast<int>(cuts(farthest));
-  return static_cast<int>(cuts(std::max(farthest, longest_way_through(moved, blade, outside, most))));
+  std::vector<PlaceWay> others = ways_outside(moved, blade, outside, finest);
+  std::erase_if(others, [&](const PlaceWay& w) { return cuts(w.length()) <= cuts(farthest); });
+  if (others.empty()) return static_cast<int>(cuts(farthest));
+  return static_cast<int>(cuts(std::max(farthest, longest_way_through(moved, blade, others, most))));
 }
 
 double sheet_deviation(const Body& body, const MapAt& half, const Blade& blade, const EdgeFront& from,

@@ -66,8 +66,8 @@ class MapAt {
 /// The number of cuts in which a blade goes its way: ⌈farthest / (limit · finest)⌉, at most 64.
 /// farthest is the longest way of a point of the blade through the material, or past the nodes in
 /// the world where the former is more than twice the latter; finest is the smallest node spacing
-/// (§ 5.1). A point that is outside the body before and after the step counts where it passes
-/// through. `fronts`: of the blade.
+/// (§ 5.1). A place of the edge that is outside the body before and after the step counts where it
+/// passes through; segments between such points are sampled. `fronts`: of the blade.
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts);
 
 /// The largest distance of the surface that the edge has swept, mapped into the material, from the

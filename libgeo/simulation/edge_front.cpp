@@ -13,6 +13,12 @@ bool has(std::span<const EdgePoint> points, double at) {
   return std::any_of(points.begin(), points.end(), [&](const EdgePoint& p) { return p.at == at; });
 }
 
+// Whether an edge is so near to its front that a strip between them would be one of slivers.
+bool is_near(const Vec3& front, const Vec3& edge, double spacing) {
+  constexpr double least_way = 0.05;  // spacings; the shortest segment of an edge
+  return (edge - front).norm() < least_way * spacing;
+}
+
 // Inserts a copy of point k, before or after it, and an empty segment between the two.
 void duplicate_point(EdgeFront& edge, std::size_t k, bool before, double at) {
   const FrontState::Point p = edge.front.points[k];
@@ -75,12 +81,22 @@ EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::v
 }
 
 bool rests(const EdgeFront& edge, std::span<const EdgePoint> next) {
-  constexpr double least_way = 0.05;  // spacings; shorter ones make strips of slivers
   std::vector<Vec3> to;
   const EdgeFront front = refined(edge, next, to);
   for (std::size_t i = 0; i < to.size(); ++i)
-    if ((to[i] - front.front.points[i].position).norm() >= least_way * nearest(next, front.at[i]).spacing) return false;
+    if (!is_near(front.front.points[i].position, to[i], nearest(next, front.at[i]).spacing)) return false;
   return true;
+}
+
+bool hold_resting(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
+                  std::vector<Vec3>& to) {
+  bool all = true;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Vec3& place = front.points[i].position;
+    if (is_near(place, mapped[i], spacing[i])) to[i] = place;
+    all = all && to[i] == place;
+  }
+  return all;
 }
 
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {

@@ -38,9 +38,14 @@ std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at);
 /// lacks. `to` receives the next position of every point; points whose parameter `next` lacks move
 /// to that of the nearest one (downsampling). Both are ascending in the parameter.
 EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::vector<Vec3>& to);
-/// Whether every point of `next` is within a twentieth of a node spacing of its place in the front:
-/// nothing is to be cut. An edge at rest in a body that trembles would cut slivers off.
+/// Whether an edge rests: each of its points is within a twentieth of a node spacing of the nearest
+/// point of the front. In a body that trembles it would cut slivers off.
 bool rests(const EdgeFront& edge, std::span<const EdgePoint> next);
+/// Holds the points of a front whose edge is that near: sets their next positions, `to`, to where
+/// they are. Returns whether all points stay. `mapped`: where the edge is; `spacing`: of the nodes
+/// there; both for each point.
+bool hold_resting(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
+                  std::vector<Vec3>& to);
 /// Downsampling, after the step: removes points whose parameter `next` lacks, where they coincide
 /// with a neighbour.
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next);

@@ -364,7 +364,6 @@ Simulation::Impl::PlannedCut Simulation::Impl::plan_cut(const MovedBody& moved, 
     if (plan.advances[r].rests) continue;
     const EdgeFront& front = state.fronts[b][r];
     const FrontAnchor anchor(body.surface, *start, blade, front);
-    for (EdgePoint& p : plan.runs[r]) p.material = anchor.corrected(p.at, p.material, p.spacing);
     plan.advances[r] = advance_of(front, plan.runs[r], *half, blade, anchor);
   }
   return plan;
@@ -396,16 +395,21 @@ void Simulation::Impl::make_cut(std::size_t b, PlannedCut plan, FrameStats& stat
   }
 }
 
-// The next position of a front. `half`: the map at half the time of the cut; `anchor`: of the
-// front.
+// The next position of a front. `run`: where the edge is; `half`: the map at half the time of the
+// cut; `anchor`: of the front.
 Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, std::span<const EdgePoint> run,
                                                        const MapAt& half, const Blade& blade,
                                                        const FrontAnchor& anchor) const {
   Advance a;
-  a.edge = refined(front, run, a.to);
-  for (const double at : a.edge.at) a.spacing.push_back(nearest(run, at).spacing);
+  std::vector<Vec3> mapped;
+  a.edge = refined(front, run, mapped);
+  for (const double at : a.edge.at) {
+    const EdgePoint& p = nearest(run, at);
+    a.to.push_back(anchor.corrected(p.at, p.material, p.spacing)), a.spacing.push_back(p.spacing);
+  }
   a.retreating = hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
-  a.deviation = sheet_deviation(body, half, blade, a.edge, a.to, anchor);
+  a.rests = hold_resting(a.edge.front, mapped, a.spacing, a.to);
+  if (!a.rests) a.deviation = sheet_deviation(body, half, blade, a.edge, a.to, anchor);
   return a;
 }
 

@@ -117,8 +117,19 @@ TEST_CASE("only the printed address answers") {
   CHECK_THROWS_AS(Server({"nowhere", 0, token, "", ""}, s.inbox), geo::InputError);
 }
 
+// Whether this machine has an interface for IPv6.
+bool has_ipv6() {
+  net::io_context io;
+  tcp::acceptor acceptor(io);
+  beast::error_code error;
+  acceptor.open(tcp::v6(), error);
+  if (!error) acceptor.bind({net::ip::make_address("::1"), 0}, error);
+  return !error;
+}
+
 TEST_CASE("a server at all interfaces answers under each of its addresses") {
   for (const std::string address : {"0.0.0.0", "::"}) {
+    if (address == "::" && !has_ipv6()) continue;
     Served s(address);
     const std::string port = ":" + std::to_string(s.port());
     CHECK(s.server.url() ==

@@ -85,12 +85,38 @@ TEST_CASE("a blade that is pulled out of its cut leaves it as it is") {
   CHECK(crack_area(sim.body().surface) == Approx(0.6).epsilon(0.02));
 }
 
-TEST_CASE("a blade that jumps over the body in one step has cut it") {
-  Simulation sim(scene_of("", "[0, 0, 0.507, 4, 0, 0, 1, 0], [0.05, 0, 0.507, -3, 0, 0, 1, 0]", "0.5"),
-                 make_block({1, 1, 1}, 0.2));
-  run(sim, 1);
-  CHECK(find_pieces(sim.body().surface).count == 2);
-  CHECK(crack_area(sim.body().surface) == Approx(1).epsilon(1e-3));
+TEST_CASE("a blade that jumps in one step has cut what it passed") {
+  const auto area = [](double end, bool is_divided) {
+    Scene scene =
+        scene_of("", "[0, 0, 0.507, 4, 0, 0, 1, 0], [0.05, 0, 0.507, " + std::to_string(end) + ", 0, 0, 1, 0]", "0.5");
+    auto& points = scene.blades[0].points;
+    if (!is_divided) points = {points.front(), points.back()};  // both beside the body
+    Simulation sim(scene, make_block({1, 1, 1}, 0.2));
+    run(sim, 1);
+    return crack_area(sim.body().surface);
+  };
+  for (const bool is_divided : {true, false}) {
+    CHECK(area(-3, is_divided) == Approx(1).epsilon(1e-3));  // over the body
+    CHECK(area(0.4, is_divided) == Approx(0.6).epsilon(0.02));
+  }
+}
+
+TEST_CASE("a blade that stands in a soft body cuts nothing, though the body trembles") {
+  const Scene scene = parse_scene(
+      "gravity = [0, 0, -9.81]\n[body]\nmesh = 'a'\nspacing = 0.12\n[material]\nyoung = 4e4\ndensity = 1000\ndamping = "
+      "1.0\n[ground]\nstiffness = 1e4\nfriction = 0.5\n[time]\nframe_rate = 24\nstep = 0.021\naccuracy = 0.004\n"
+      "[[blade]]\npoints = [[1.0, -0.8, 0.02], [1.0, 0, 0], [1.0, 1.8, 0.01]]\ndivide = 14\nkeys = [[1.0, 0.003, "
+      "0.007, "
+      "1.15, 0, 0, 1, 4], [2.0, 0.007, 0.003, 0.45, 0, 0, 1, 8], [9.0, 0.007, 0.003, 0.45, 0, 0, 1, 8]]\n",
+      "s.toml");
+  Simulation sim(scene, make_block({2, 1, 1}, 0.1));
+  run(sim, 52);
+  CHECK(crack_area(sim.body().surface) > 0.3);
+  const std::size_t faces = sim.body().surface.face_count();
+  const FrameStats work = run(sim, 30);
+  CHECK(sim.body().surface.face_count() == faces);
+  CHECK(work.sheet.crumbs == 0);
+  CHECK(find_pieces(sim.body().surface).count == 1);
 }
 
 TEST_CASE("an edge at rest in material that creeps across it cuts seldom, and is never far from its front") {
@@ -103,7 +129,7 @@ TEST_CASE("an edge at rest in material that creeps across it cuts seldom, and is
   run(sim, 2);
   const FrameStats work = run(sim, 14);
   CHECK(work.fronts > 3);
-  CHECK(work.fronts <= 8);  // of 70 time steps
+  CHECK(work.fronts < 35);  // of 70 time steps
   const double crept = -sim.state().motion.displacement[0].y();
   CHECK(crept > 0.2 * spacing);
   REQUIRE(sim.state().fronts[0].size() == 1);

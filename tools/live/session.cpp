@@ -130,6 +130,13 @@ double Session::pull_stiffness(std::uint32_t node) const {
   return std::max(2 * material.young * run_.body().nodes.radius[node], 10 * mass_ * run_.scene().gravity.norm() / size);
 }
 
+geo::NodeId Session::carrier_of(geo::SurfaceVertexId vertex) const {
+  const geo::Binding& binding = run_.body().binding;
+  const auto master = binding.master[vertex.index()];
+  if (!master.valid()) throw BadMessage("no node carries this point");
+  return binding.master_node[master.index()];
+}
+
 void Session::obey(ClientId page, const Grab& grab) {
   taken_[page] = grab.input;
   const Hand hand{page, grab.id};
@@ -138,11 +145,8 @@ void Session::obey(ClientId page, const Grab& grab) {
     require_free_hand();
     geo::SurfaceVertexId nearest;
     const geo::Vec3 x = material_point(grab.spot, nearest);
-    const geo::Binding& binding = run_.body().binding;
-    const auto master = binding.master[nearest.index()];
-    if (!master.valid()) throw BadMessage("no node carries this point");
     geo::Pull pull;
-    pull.point = x, pull.node = binding.master_node[master.index()].value;
+    pull.point = x, pull.node = carrier_of(nearest).value;
     pull.stiffness = pull_stiffness(*pull.node);
     const std::size_t p = run_.add_pull(std::move(pull));
     run_.extend_pull(p, 0, world_point(grab.spot));
@@ -170,11 +174,8 @@ void Session::obey(const Pin& pin) {
   const double radius = pin.radius > 0 ? pin.radius : coarsest_spacing(run_.body());
   geo::Grip grip;
   grip.lo = x - geo::Vec3::Constant(radius), grip.hi = x + geo::Vec3::Constant(radius);
-  const auto& nodes = run_.body().nodes.position;  // a pin holds one at least
-  const auto distance = [&](const geo::Vec3& p) { return (p - x).cwiseAbs().maxCoeff(); };
-  const geo::Vec3& nearest_node = *std::min_element(
-      nodes.begin(), nodes.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  grip.lo = grip.lo.cwiseMin(nearest_node), grip.hi = grip.hi.cwiseMax(nearest_node);
+  const geo::Vec3& node = run_.body().nodes.position[carrier_of(nearest).index()];
+  grip.lo = grip.lo.cwiseMin(node), grip.hi = grip.hi.cwiseMax(node);
   pins_.push_back({run_.add_grip(std::move(grip)), x, world_point(pin.spot), radius});
 }
 

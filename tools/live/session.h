@@ -139,6 +139,7 @@ class Session {
   bool end_hands();
   void count_pieces();
   geo::Vec3 material_point(const Spot& spot, geo::SurfaceVertexId& nearest) const;
+  geo::NodeId carrier_of(geo::SurfaceVertexId vertex) const;
   geo::Vec3 world_point(const Spot& spot) const;
   double pull_stiffness(std::uint32_t node) const;
 

@@ -133,7 +133,8 @@ function listenToControls() {
 
 // A view to begin with, behind the page's name: #tool=grab&azimuth=1&nodes=true
 function followAddress() {
-  for (const [key, value] of new URLSearchParams(location.hash.slice(1))) {
+  const wishes = [...new URLSearchParams(location.hash.slice(1))];
+  for (const [key, value] of wishes.sort(([a], [b]) => (a === "skin") - (b === "skin"))) {  // others change the skin, too
     if (key in home) home[key] = view[key] = Number(value);
     else if (key in state) set(key, value === "true" || value === "false" ? value === "true" : Number.isFinite(Number(value)) ? Number(value) : value);
   }

@@ -11,7 +11,7 @@ const live = {
   time: 0, revision: -1, vertices: 0, nodes: 0,
   position: new Float32Array(0),  // shown coordinates
   node: null, stress: null, stressMost: 0,
-  pairs: null, asked: false, stale: false,  // edges of the graph; whether an answer is due; whether the surface has changed since it was asked for
+  pairs: null, asked: 0, stale: false,  // edges of the graph; when they were asked for, if an answer is due; whether the surface has changed since
 };
 
 const toShown = (p) => new THREE.Vector3(...p.map((x, k) => (x - about.middle[k]) / about.unit));
@@ -45,15 +45,15 @@ function frameArrived(frame, time) {
   redraw();
 }
 function graphArrived(pairs) {
-  live.pairs = pairs.slice(), live.asked = false;
+  live.pairs = pairs.slice(), live.asked = 0;
   if (live.stale) askForGraph();
   changed();
 }
-// Each change of the surface may change the graph. While an answer is due, the next request waits for it.
+// Each change of the surface may change the graph. While an answer is due, the next request waits for it, two seconds at most.
 function askForGraph() {
-  live.stale = live.asked;
-  if (!state.edges || live.asked) return;
-  live.asked = true;
+  live.stale = live.asked > 0 && performance.now() - live.asked < 2000;
+  if (!state.edges || live.stale) return;
+  live.asked = performance.now();
   send({ want: { graph: true } });
 }
 
@@ -79,7 +79,7 @@ function takeFrame() {
 
 function sendWants(anew) {
   const wants = { nodes: state.nodes || state.stress || state.edges, stress: state.stress, graph: state.edges };
-  if (anew || JSON.stringify(wants) !== live.wants) live.asked = state.edges, live.stale = false, send({ want: wants });
+  if (anew || JSON.stringify(wants) !== live.wants) live.asked = state.edges ? performance.now() : 0, live.stale = false, send({ want: wants });
   live.wants = JSON.stringify(wants);
 }
 // After any change of what is shown.

@@ -88,15 +88,13 @@ bool rests(const EdgeFront& edge, std::span<const EdgePoint> next) {
   return true;
 }
 
-bool hold_resting(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
-                  std::vector<Vec3>& to) {
-  bool all = true;
+bool rests(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
+           std::span<const Vec3> to) {
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Vec3& place = front.points[i].position;
-    if (is_near(place, mapped[i], spacing[i])) to[i] = place;
-    all = all && to[i] == place;
+    if (to[i] != place && !is_near(place, mapped[i], spacing[i])) return false;
   }
-  return all;
+  return true;
 }
 
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {

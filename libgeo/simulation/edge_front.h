@@ -41,11 +41,11 @@ EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::v
 /// Whether an edge rests: each of its points is within a twentieth of a node spacing of the nearest
 /// point of the front. In a body that trembles it would cut slivers off.
 bool rests(const EdgeFront& edge, std::span<const EdgePoint> next);
-/// Holds the points of a front whose edge is that near: sets their next positions, `to`, to where
-/// they are. Returns whether all points stay. `mapped`: where the edge is; `spacing`: of the nodes
-/// there; both for each point.
-bool hold_resting(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
-                  std::vector<Vec3>& to);
+/// The same where some points stay because they would go back: each other one is that near.
+/// `mapped`: where the edge is; `spacing`: of the nodes there; `to`: next positions; each for all
+/// points of the front.
+bool rests(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
+           std::span<const Vec3> to);
 /// Downsampling, after the step: removes points whose parameter `next` lacks, where they coincide
 /// with a neighbour.
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next);

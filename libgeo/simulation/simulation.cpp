@@ -408,7 +408,7 @@ Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, s
     a.to.push_back(anchor.corrected(p.at, p.material, p.spacing)), a.spacing.push_back(p.spacing);
   }
   a.retreating = hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
-  a.rests = hold_resting(a.edge.front, mapped, a.spacing, a.to);
+  a.rests = rests(a.edge.front, mapped, a.spacing, a.to);
   if (!a.rests) a.deviation = sheet_deviation(body, half, blade, a.edge, a.to, anchor);
   return a;
 }

@@ -101,24 +101,6 @@ TEST_CASE("a blade that jumps in one step has cut what it passed") {
   }
 }
 
-TEST_CASE("a blade that stands in a soft body cuts nothing, though the body trembles") {
-  const Scene scene = parse_scene(
-      "gravity = [0, 0, -9.81]\n[body]\nmesh = 'a'\nspacing = 0.12\n[material]\nyoung = 4e4\ndensity = 1000\ndamping = "
-      "1.0\n[ground]\nstiffness = 1e4\nfriction = 0.5\n[time]\nframe_rate = 24\nstep = 0.021\naccuracy = 0.004\n"
-      "[[blade]]\npoints = [[1.0, -0.8, 0.02], [1.0, 0, 0], [1.0, 1.8, 0.01]]\ndivide = 14\nkeys = [[1.0, 0.003, "
-      "0.007, "
-      "1.15, 0, 0, 1, 4], [2.0, 0.007, 0.003, 0.45, 0, 0, 1, 8], [9.0, 0.007, 0.003, 0.45, 0, 0, 1, 8]]\n",
-      "s.toml");
-  Simulation sim(scene, make_block({2, 1, 1}, 0.1));
-  run(sim, 52);
-  CHECK(crack_area(sim.body().surface) > 0.3);
-  const std::size_t faces = sim.body().surface.face_count();
-  const FrameStats work = run(sim, 30);
-  CHECK(sim.body().surface.face_count() == faces);
-  CHECK(work.sheet.crumbs == 0);
-  CHECK(find_pieces(sim.body().surface).count == 1);
-}
-
 TEST_CASE("an edge at rest in material that creeps across it cuts seldom, and is never far from its front") {
   constexpr double spacing = 0.25;
   Simulation sim(scene_of("velocity = [0, -0.06, 0]",
@@ -129,7 +111,7 @@ TEST_CASE("an edge at rest in material that creeps across it cuts seldom, and is
   run(sim, 2);
   const FrameStats work = run(sim, 14);
   CHECK(work.fronts > 3);
-  CHECK(work.fronts < 35);  // of 70 time steps
+  CHECK(work.fronts <= 8);  // of 70 time steps
   const double crept = -sim.state().motion.displacement[0].y();
   CHECK(crept > 0.2 * spacing);
   REQUIRE(sim.state().fronts[0].size() == 1);

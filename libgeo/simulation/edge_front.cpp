@@ -13,12 +13,6 @@ bool has(std::span<const EdgePoint> points, double at) {
   return std::any_of(points.begin(), points.end(), [&](const EdgePoint& p) { return p.at == at; });
 }
 
-// Whether an edge is so near to its front that a strip between them would be one of slivers.
-bool is_near(const Vec3& front, const Vec3& edge, double spacing) {
-  constexpr double least_way = 0.05;  // spacings; the shortest segment of an edge
-  return (edge - front).norm() < least_way * spacing;
-}
-
 // Inserts a copy of point k, before or after it, and an empty segment between the two.
 void duplicate_point(EdgeFront& edge, std::size_t k, bool before, double at) {
   const FrontState::Point p = edge.front.points[k];
@@ -81,18 +75,19 @@ EdgeFront refined(const EdgeFront& edge, std::span<const EdgePoint> next, std::v
 }
 
 bool rests(const EdgeFront& edge, std::span<const EdgePoint> next) {
-  std::vector<Vec3> to;
-  const EdgeFront front = refined(edge, next, to);
-  for (std::size_t i = 0; i < to.size(); ++i)
-    if (!is_near(front.front.points[i].position, to[i], nearest(next, front.at[i]).spacing)) return false;
-  return true;
+  std::vector<Vec3> mapped;
+  const EdgeFront front = refined(edge, next, mapped);
+  std::vector<double> spacing;
+  for (const double at : front.at) spacing.push_back(nearest(next, at).spacing);
+  return rests(front.front, mapped, spacing, mapped);
 }
 
 bool rests(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
            std::span<const Vec3> to) {
+  constexpr double least_way = 0.05;  // spacings; the shortest segment of an edge
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Vec3& place = front.points[i].position;
-    if (to[i] != place && !is_near(place, mapped[i], spacing[i])) return false;
+    if (to[i] != place && !((mapped[i] - place).norm() < least_way * spacing[i])) return false;
   }
   return true;
 }

@@ -7,6 +7,7 @@
 #include "live/bare_model.h"
 #include "live/browser.h"
 #include "live/loop.h"
+#include "live/memory.h"
 #include "live/page_text.h"
 #include "sim/setup.h"
 #include "tool.h"
@@ -42,6 +43,7 @@ void require_options(const Command& command) {
 }
 
 void serve(const Command& command, const tool::Tool& t) {
+  live::use_one_heap();
   require_options(command);
   const sim::Setup setup = read(command, t);
   live::Session session(setup, t.progress());

@@ -1,4 +1,4 @@
-// Advises the kernel to back large arrays by huge pages (madvise on Linux; nothing elsewhere).
+// Advises the kernel how to back large arrays (madvise on Linux; nothing elsewhere).
 #include "base/uninitialized_array.h"
 
 #ifdef __linux__
@@ -8,15 +8,31 @@
 #include <cstdint>
 
 namespace geo {
+namespace {
 
-void advise_huge_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
+// For the huge pages that are within the memory as a whole.
+void advise(void* at, std::size_t bytes, int advice) {
   constexpr std::uintptr_t page = std::uintptr_t(2) << 20;  // 2 MiB; arrays below 8 MiB are left alone
   if (bytes < 4 * page) return;
   const auto begin = reinterpret_cast<std::uintptr_t>(at);
   const auto first = (begin + page - 1) / page * page, last = (begin + bytes) / page * page;
   // Advice only: its failure is harmless, so the return value is ignored.
-  madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+  madvise(reinterpret_cast<void*>(first), last - first, advice);
+}
+#endif
+
+}  // namespace
+
+void advise_huge_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+  advise(at, bytes, MADV_HUGEPAGE);
+#endif
+}
+
+void advise_small_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
+#ifdef __linux__
+  advise(at, bytes, MADV_NOHUGEPAGE);
 #endif
 }
 

@@ -14,6 +14,10 @@ namespace geo {
 /// takes the advice.
 void advise_huge_pages(void* at, std::size_t bytes);
 
+/// Takes that advice back, before the memory is freed. The heap may use it for small objects, and
+/// each of them would then occupy a huge page.
+void advise_small_pages(void* at, std::size_t bytes);
+
 /// An array of fixed size with indeterminate elements. The operating system maps a page when it is
 /// first written, which takes as long as filling it; without an initialising pass, all threads that
 /// fill the array share this cost.
@@ -29,7 +33,7 @@ class UninitializedArray {
   UninitializedArray() = default;
   /// Allocates `size` elements, aligned for T. Throws std::bad_alloc.
   explicit UninitializedArray(std::size_t size)
-      : at_(static_cast<T*>(::operator new(size * sizeof(T), alignment))), size_(size) {
+      : at_(static_cast<T*>(::operator new(size * sizeof(T), alignment)), Release{size * sizeof(T)}), size_(size) {
     advise_huge_pages(data(), size * sizeof(T));
   }
   /// Number of elements.
@@ -55,8 +59,9 @@ class UninitializedArray {
 
  private:
   struct Release {
+    std::size_t bytes = 0;
     /// Frees the elements.
-    void operator()(T* at) const { ::operator delete(at, alignment); }
+    void operator()(T* at) const { advise_small_pages(at, bytes), ::operator delete(at, alignment); }
   };
   std::unique_ptr<T, Release> at_;
   std::size_t size_ = 0;

@@ -94,6 +94,7 @@ while time.time() < start + 60 * wish.minutes:
     is_slow = age - recent[0][0] > 30 and frame["time"] - recent[0][1] < wish.slowest * (age - recent[0][0])
     if frame["pieces"] > wish.pieces or is_slow:
         recent, memory = [], reset()
+        print(f"{age:5.0f} s: {memory / 1e6:.0f} MB after reset {resets}", flush=True)
         level = level or (memory if age > settle else None)
     if program.process.poll() is not None:
         failures.append("kerf-live ended: " + "".join(program.said))

@@ -8,6 +8,12 @@
 
 namespace live {
 
+void use_one_heap() {
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 void release_free_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);

@@ -20,6 +20,7 @@ namespace {
 // Limits of effort. None changes whether something crosses; they bound what one step may cost.
 constexpr int max_rounds = 8;          // of motion and reduction of the tracking error; more: nearer to the targets
 constexpr int max_projections = 240;   // in all rounds; what is left takes the fallback
+constexpr int max_looks = 1000;        // of projections at constraints, per triangle; then no further round
 constexpr int patience = 6;            // projections without progress, after which pairs become rigid
 constexpr int max_growths = 20;        // of the fallback's set of vertices
 constexpr int growths_to_follow = 10;  // after which all vertices follow the field
@@ -54,8 +55,9 @@ class CrossingFreeMotion {
         break;
       }
       stats_.planes += advance_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
-      if (outcome == Outcome::fallback) break;
+      if (outcome == Outcome::fallback || looks_left() == 0) break;
     }
+    stats_.looked_at += looks_;
     for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.representative[v]];
     return std::move(at_);
   }
@@ -80,6 +82,11 @@ class CrossingFreeMotion {
 
   bool arrived() const {
     return std::none_of(surface_.vertices.begin(), surface_.vertices.end(), [&](auto v) { return at_[v] != m_.to[v]; });
+  }
+
+  std::size_t looks_left() const {
+    const std::size_t most = max_looks * surface_.triangles.size();
+    return most - std::min(most, looks_);
   }
 
   Outcome advance(int round) {
@@ -116,7 +123,7 @@ class CrossingFreeMotion {
     std::size_t fewest = ~std::size_t(0);  // uncertified pairs at the last progress
     int last_progress = 0;                 // the iteration of it
     bool certified = false;
-    for (int i = 0; projections_ < max_projections; ++i, ++projections_) {
+    for (int i = 0; projections_ < max_projections && looks_left() > 0; ++i, ++projections_) {
       const auto uncertified = certify.uncertified_pairs(near_.pairs(), changed, rigid);
       certified = uncertified.empty();
       if (certified) break;
@@ -126,10 +133,10 @@ class CrossingFreeMotion {
         projection.add(uncertified, next);
       else
         projection.make_rigid(uncertified), fewest = uncertified.size(), last_progress = i;
-      projection.project(next);
+      looks_ += projection.project(next, looks_left());
       if (next == before) {
         if (!projection.make_rigid(uncertified)) break;
-        projection.project(next);
+        looks_ += projection.project(next, looks_left());
       }
       mark_changed(before, next, changed);
       for (const auto& [s, t] : uncertified) changed[s] = changed[t] = 1;  // to be tested again if unmoved, too
@@ -213,6 +220,7 @@ class CrossingFreeMotion {
   std::vector<Vec3> at_;            // per vertex; current for representatives only
   double edge_ = 0, rounding_ = 0;  // model units
   int projections_ = 0;             // so far
+  std::size_t looks_ = 0;           // at constraints, in all projections
 };
 
 }  // namespace

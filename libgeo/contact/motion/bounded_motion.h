@@ -11,9 +11,10 @@ namespace geo {
 
 /// Statistics of one motion.
 struct BoundedMotionStats {
-  std::size_t planes = 0;    ///< separating planes between triangles that might have met
-  std::size_t in_zones = 0;  ///< vertices that moved in rigid impact zones, at most at a time
-  bool held = false;         ///< not even a rigid motion was possible, so nothing moved
+  std::size_t planes = 0;     ///< separating planes between triangles that might have met
+  std::size_t in_zones = 0;   ///< vertices that moved in rigid impact zones, at most at a time
+  std::size_t looked_at = 0;  ///< constraints that were looked at, over all sweeps of all projections
+  bool held = false;          ///< not even a rigid motion was possible, so nothing moved
 };
 
 /// Positions at the end of the motion, per vertex; coincident vertices stay coincident. No

@@ -275,8 +275,7 @@ TEST_CASE("contact constraints do not depend on what the broad phase was used fo
 }
 
 TEST_CASE(
-    "targets of sheets that are pressed representative while they slide are projected by their deficit, without "
-    "zones") {
+    "targets of sheets that are pressed together while they slide are projected by their deficit, without zones") {
   const auto [first, count] = seeds(20);
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);

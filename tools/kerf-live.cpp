@@ -43,7 +43,7 @@ void require_options(const Command& command) {
 }
 
 void serve(const Command& command, const tool::Tool& t) {
-  live::use_one_heap();
+  live::limit_free_memory();
   require_options(command);
   const sim::Setup setup = read(command, t);
   live::Session session(setup, t.progress());

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -353,17 +354,23 @@ void AabbTree::enlarge(std::uint32_t index, const Box3& box) {
 
 AabbTree::Pairs AabbTree::pairs(const std::vector<std::uint8_t>* marked,
                                 const std::function<void(Pairs&)>& filter) const {
-  if (levels_.empty()) return {};
+  return *pairs_up_to(std::numeric_limits<std::size_t>::max(), marked, filter);
+}
+
+std::optional<AabbTree::Pairs> AabbTree::pairs_up_to(std::size_t most, const std::vector<std::uint8_t>* marked,
+                                                     const std::function<void(Pairs&)>& filter) const {
+  if (levels_.empty()) return Pairs();
   std::vector<std::uint8_t> marked_places;
   if (marked) {
     marked_places.resize(order_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) marked_places[i] = (*marked)[order_[i]];
   }
   std::vector<Pairs> found(levels_[1].size());  // by group of level 1
+  std::atomic<std::size_t> total = 0;
   parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
     Pairs some;
-    for (std::size_t s = begin; s < end; ++s) {
+    for (std::size_t s = begin; s < end && total <= most; ++s) {
       some.clear();
       std::uint32_t queried[width] = {}, any = 0;  // lanes of each group of level 0
       for (std::size_t i = s * width * width; i < std::min(order_.size(), (s + 1) * width * width); ++i) {
@@ -383,9 +390,10 @@ AabbTree::Pairs AabbTree::pairs(const std::vector<std::uint8_t>* marked,
           some[count++] = {std::min(i, j), std::max(i, j)};
       some.resize(count);
       if (filter) filter(some);
-      found[s].assign(some.begin(), some.end());
+      found[s].assign(some.begin(), some.end()), total += some.size();
     }
   });
+  if (total > most) return {};
   std::vector<std::size_t> first(found.size() + 1, 0);
   for (std::size_t s = 0; s < found.size(); ++s) first[s + 1] = first[s] + found[s].size();
   Pairs result(first.back());

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -60,6 +61,10 @@ class AabbTree {
   /// ones. The order of pairs does not depend on the number of threads. After refit() or
   /// enlarge() it may differ from that of a new tree.
   Pairs pairs(const std::vector<std::uint8_t>* marked = nullptr, const std::function<void(Pairs&)>& filter = {}) const;
+  /// As pairs(), if there are at most `most`; nothing if there are more, of which only some are
+  /// then ever in memory.
+  std::optional<Pairs> pairs_up_to(std::size_t most, const std::vector<std::uint8_t>* marked = nullptr,
+                                   const std::function<void(Pairs&)>& filter = {}) const;
 
   /// levels()[0] holds the boxes, levels()[l] those around groups of levels()[l − 1].
   const std::vector<std::vector<BoxGroup>>& levels() const { return levels_; }

@@ -53,6 +53,10 @@ TEST_CASE("the pairs of a tree are those of a double loop") {
     const auto all = tree.pairs(), with_some = tree.pairs(&some);
     CHECK(sorted(all) == expected(false));
     CHECK(sorted(with_some) == expected(true));
+    for (const std::size_t most : {all.size() / 2, all.size(), 2 * all.size() + 1}) {
+      CHECK(tree.pairs_up_to(most) == (all.size() <= most ? std::optional(all) : std::nullopt));
+      CHECK(tree.pairs_up_to(most, &some) == (with_some.size() <= most ? std::optional(with_some) : std::nullopt));
+    }
     for_each_simd_target([&] {
       CHECK(tree.pairs() == all);
       CHECK(tree.pairs(&some) == with_some);

@@ -24,7 +24,7 @@ first = client.next()
 lo, hi = client.told["box"]
 middle, radius = [(a + b) / 2 for a, b in zip(lo, hi)], 0.5 * sum((b - a) ** 2 for a, b in zip(lo, hi)) ** 0.5
 said, failures = collections.Counter(), []
-frames = most = resets = strokes = told = highest = 0
+frames = most = resets = strokes = told = highest = slowest = 0
 level = None
 recent = []  # pairs of seconds, real and simulated
 message = ""
@@ -37,8 +37,10 @@ def around(spread):
 
 def next_frame():
     """The next frame, counted; sentences for people are counted when they change."""
-    global frames, message
+    global frames, message, slowest
+    begin = time.time()
     frame = client.next()
+    slowest = max(slowest, time.time() - begin)
     frames += 1
     if frame["message"] != message and not frame["message"].startswith("slower than"):
         message = frame["message"]
@@ -109,7 +111,7 @@ if said[""]:
     failures.append(f"{said['']} notices without a reason")
 for text, count in sorted(said.items()):
     print(f"said {count} times: {text}")
-print(f"{strokes} strokes, {frames} frames, {resets} resets, at most {most} pieces, {client.bytes / 1e6:.0f} MB sent; memory {level / 1e6:.0f} MB "
+print(f"{strokes} strokes, {frames} frames, {resets} resets, at most {most} pieces, at most {slowest:.1f} s for a frame, {client.bytes / 1e6:.0f} MB sent; memory {level / 1e6:.0f} MB "
       f"after a reset at {settle:.0f} s or later, {last / 1e6:.0f} MB after one at the end, at most {highest / 1e6:.0f} MB")
 client.close()
 code = program.stop()

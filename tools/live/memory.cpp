@@ -8,9 +8,12 @@
 
 namespace live {
 
-void use_one_heap() {
+void limit_free_memory() {
 #ifdef __GLIBC__
-  mallopt(M_ARENA_MAX, 1);
+  // The first of the two keeps large arrays in the heap: given back at each end of use, their pages
+  // would be mapped anew in each frame.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 4 << 20);
 #endif
 }
 

@@ -3,9 +3,9 @@
 
 namespace live {
 
-/// Lets all threads share one heap, where the C library has several (glibc). The others would keep
-/// their free ends, whatever is released. To be called before threads allocate.
-void use_one_heap();
+/// Lets the heap of each thread keep at most 4 MB of free memory at its end, where the C library can
+/// (glibc). It would keep up to 64 MB, and release_free_memory() reaches the first heap's end only.
+void limit_free_memory();
 
 /// Returns freed memory to the system, where the C library can (glibc). It would keep the most that
 /// the run has ever used. Takes some milliseconds.

@@ -3,6 +3,7 @@
 #include "contact/detection/broad_phase.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "kerf/parallel.h"
 
@@ -15,8 +16,8 @@ bool contains(const Box3& box, const Box3& inner) {
 
 }  // namespace
 
-void BroadPhase::update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
-                        const std::vector<std::uint8_t>* changed) {
+bool BroadPhase::update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
+                        const std::vector<std::uint8_t>* changed, std::size_t most) {
   constexpr std::size_t rebuild_share = 4;  // rebuild if more than 1/4 have left their boxes; affects speed alone
   const bool valid = valid_ && tree_.boxes().size() == triangles.size(), changed_only = valid && changed;
   std::vector<Box3> boxes(changed_only ? 0 : triangles.size());
@@ -30,17 +31,32 @@ void BroadPhase::update(std::span<const Triangle> triangles, const std::function
     }
   });
   const auto count = static_cast<std::size_t>(std::count(outside.begin(), outside.end(), 1));
-  if (valid && count == 0) return;
+  if (valid && count == 0 && pairs_.size() <= most) return true;
   if (!valid || (count * rebuild_share > triangles.size() && !changed)) {
     tree_.refit_or_rebuild(std::move(boxes), triangles);
-    valid_ = true, pairs_ = tree_.pairs();
-    return;
+    std::optional<std::vector<Pair>> all = tree_.pairs_up_to(most);
+    valid_ = all.has_value(), pairs_ = std::move(all).value_or(std::vector<Pair>());
+    return valid_;
   }
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     if (outside[t]) tree_.enlarge(t, (changed_only ? box(t) : boxes[t]).grown(margin));
   std::erase_if(pairs_, [&](const Pair& p) { return outside[p.first] || outside[p.second]; });
-  const auto added = tree_.pairs(&outside);
-  pairs_.insert(pairs_.end(), added.begin(), added.end());
+  const auto added = tree_.pairs_up_to(most - std::min(most, pairs_.size()), &outside);
+  if (!added || pairs_.size() > most) {  // the boxes alone, without margins, may have fewer
+    invalidate();
+    return update(triangles, box, margin, nullptr, most);
+  }
+  pairs_.insert(pairs_.end(), added->begin(), added->end());
+  return true;
+}
+
+bool BroadPhase::update_or_halve(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box,
+                                 double margin, const std::function<void()>& halve) {
+  constexpr int most_halvings = 8;
+  for (int halvings = 0; halvings < most_halvings; ++halvings, halve())
+    if (update(triangles, box, margin, nullptr, most_per_triangle * triangles.size())) return halvings == 0;
+  update(triangles, box, margin);
+  return false;
 }
 
 }  // namespace geo

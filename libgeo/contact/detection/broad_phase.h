@@ -18,14 +18,25 @@ class BroadPhase {
  public:
   /// Indices of two triangles.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
+  /// Pairs per triangle that a motion should have at most. With more, it takes triangles far past
+  /// each other, and its cost has no bound.
+  static constexpr std::size_t most_per_triangle = 200;
 
   /// Updates pairs() for new boxes, box(t) for triangle t. With `changed`, only marked triangles
   /// have boxes that differ from the previous call. A triangle that has left its box gets a new
   /// one, extended by `margin` (model units). All pairs are searched anew at the first call,
   /// after invalidate(), and, without `changed`, when a quarter of the triangles have left their
   /// boxes. `triangles` must be the same until reset(): they decide which pairs share a vertex.
-  void update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
-              const std::vector<std::uint8_t>* changed = nullptr);
+  /// Returns whether at most `most` pairs of these boxes meet. If not, nothing is known, as after
+  /// invalidate().
+  bool update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
+              const std::vector<std::uint8_t>* changed = nullptr, std::size_t most = ~std::size_t(0));
+
+  /// Updates pairs() for the boxes of a motion. While there are more than most_per_triangle for each
+  /// triangle, calls `halve`, at most eight times; box(t) then has to be that of half the motion.
+  /// Returns whether `halve` was never called.
+  bool update_or_halve(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
+                       const std::function<void()>& halve);
 
   /// Pairs i < j, each once, in no order that results may depend on.
   const std::vector<Pair>& pairs() const { return pairs_; }

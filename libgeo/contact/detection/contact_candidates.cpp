@@ -112,14 +112,15 @@ void update_broad_phase(const SurfaceMotion& m, const RepresentativeSurface& sur
   // Boxes contain the start, too: a vertex may stay there.
   Vec3 start_centroid = Vec3::Zero();
   for (const auto v : surface.vertices) start_centroid += m.from[v] / double(surface.vertices.size());
-  broad_phase.update(
-      m.triangles,
-      [&](std::size_t t) {
-        Box3 box = surface.swept_box(t, fitted, m.to);
-        for (const auto v : surface.triangles[t]) box.add(m.from[v] - start_centroid);
-        return box.grown(0.5 * m.reach);
-      },
-      0);
+  std::vector<Vec3> to = m.to;
+  const auto box_of = [&](std::size_t t) {
+    Box3 box = surface.swept_box(t, fitted, to);
+    for (const auto v : surface.triangles[t]) box.add(m.from[v] - start_centroid);
+    return box.grown(0.5 * m.reach);
+  };
+  broad_phase.update_or_halve(m.triangles, box_of, 0, [&] {
+    for (const auto v : surface.vertices) to[v] = 0.5 * (fitted[v] + to[v]);
+  });
 }
 
 // The pairs of the broad phase that cheap axes do not cull, at most the limit for each pair of

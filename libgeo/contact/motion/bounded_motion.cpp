@@ -93,12 +93,20 @@ class CrossingFreeMotion {
     std::vector<Vec3> start = at_;
     if (round == 0) apply_affine_fit(surface_.vertices, at_, m_.to, start);
     std::vector<Vec3> next = straight(start, round == 0 && m_.guess ? *m_.guess : m_.to);
-    update_near(start, next);
+    const bool whole = shorten(start, next);
     if (project_targets(start, next)) {
       at_ = std::move(next);
-      return Outcome::free;
+      return whole ? Outcome::free : Outcome::scaled_down;
     }
     return fall_back(start);
+  }
+
+  // Halves a motion that takes triangles far past each other, and finds near pairs. Returns whether
+  // that left the motion as it was. Its rest is left to the next round.
+  bool shorten(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
+    return near_.update_or_halve(m_.triangles, swept(start, next), box_margin * edge_, [&] {
+      for (const auto v : surface_.vertices) next[v] = 0.5 * (start[v] + next[v]);
+    });
   }
 
   // The end of a straight motion of all vertices in use.
@@ -140,7 +148,7 @@ class CrossingFreeMotion {
       }
       mark_changed(before, next, changed);
       for (const auto& [s, t] : uncertified) changed[s] = changed[t] = 1;  // to be tested again if unmoved, too
-      update_near(start, next, &changed);
+      if (!update_near(start, next, changed)) break;
     }
     stats_.in_zones = std::max(stats_.in_zones, projection.in_zones());
     return certified;
@@ -149,7 +157,8 @@ class CrossingFreeMotion {
   // Moves at_ from `start`, by the fallback where the straight motion is not certified.
   Outcome fall_back(const std::vector<Vec3>& start) {
     std::vector<Vec3> next = straight(start, m_.to);
-    update_near(start, next);
+    const bool whole = shorten(start, next);
+    const std::vector<Vec3> to = next;
     MotionCertifier certify = certifier(start, next);
     std::optional<FallbackMotion> fallback;
     const MotionCertifier::KnownDisjoint kept_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
@@ -159,7 +168,7 @@ class CrossingFreeMotion {
     for (int growth = 0;; ++growth) {
       const auto uncertified = certify.uncertified_pairs(near_.pairs(), changed, kept_apart);
       if (uncertified.empty()) break;
-      if (!fallback) fallback.emplace(surface_.triangles, surface_.vertices, start, m_.to, edge_);
+      if (!fallback) fallback.emplace(surface_.triangles, surface_.vertices, start, to, edge_);
       bool grown = fallback->add(uncertified);
       if (growth == growths_to_follow) grown |= fallback->add_all();
       if (!grown || growth == max_growths) {
@@ -169,11 +178,14 @@ class CrossingFreeMotion {
       const std::vector<Vec3> before = next;
       fallback->apply(next);
       mark_changed(before, next, changed);
-      update_near(start, next, &changed);
+      if (!update_near(start, next, changed)) {
+        move_as_one(start, next);
+        break;
+      }
     }
     if (fallback) stats_.in_zones = std::max(stats_.in_zones, fallback->in_zones());
     at_ = std::move(next);
-    return !fallback || fallback->share() == 1 ? Outcome::fallback : Outcome::scaled_down;
+    return whole && (!fallback || fallback->share() == 1) ? Outcome::fallback : Outcome::scaled_down;
   }
 
   // Marks triangles with a vertex that has moved.
@@ -191,7 +203,7 @@ class CrossingFreeMotion {
   // it cross, no motion.
   void move_as_one(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
     next = start;
-    update_near(next, next);
+    near_.update(m_.triangles, swept(next, next), box_margin * edge_);
     std::vector<BroadPhase::Pair> pairs = near_.pairs();
     for (std::uint32_t v = 0; v < fans_.size(); ++v)
       fans_.for_each_pair(
@@ -204,11 +216,17 @@ class CrossingFreeMotion {
   }
 
   // Makes near_ a superset of the pairs that may meet between `start` and `next`. Only triangles
-  // marked in `changed` have another `next` than before.
-  void update_near(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
-                   const std::vector<std::uint8_t>* changed = nullptr) {
-    near_.update(
-        m_.triangles, [&](std::size_t t) { return surface_.swept_box(t, start, next); }, box_margin * edge_, changed);
+  // marked in `changed` have another `next` than before. Returns whether they are few enough for a
+  // motion; if not, near_ has none.
+  bool update_near(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
+                   const std::vector<std::uint8_t>& changed) {
+    return near_.update(m_.triangles, swept(start, next), box_margin * edge_, &changed,
+                        BroadPhase::most_per_triangle * m_.triangles.size());
+  }
+
+  // The boxes that triangles sweep.
+  std::function<Box3(std::size_t)> swept(const std::vector<Vec3>& start, const std::vector<Vec3>& next) const {
+    return [&](std::size_t t) { return surface_.swept_box(t, start, next); };
   }
 
   const SurfaceMotion& m_;

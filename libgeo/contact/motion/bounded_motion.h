@@ -31,6 +31,10 @@ struct BoundedMotionStats {
 ///    error that this leaves is reduced (vertex_advance.h). If the field was scaled down, the
 ///    motion begins again from there.
 ///
+/// The effort is bounded: a motion that takes triangles far past each other is halved
+/// (BroadPhase::most_per_triangle), and the rest is left to the next of eight rounds. Projections
+/// look at 1,000 constraints per triangle and then finish their sweep; no round follows.
+///
 /// `near`: pairs known of the same triangles, from find_contact_candidates() or an earlier motion
 /// in this step; `fans`: of the triangles; null: made here. `two_sided`: as in find_crossings().
 std::vector<Vec3> move_without_crossing(const SurfaceMotion& motion, bool two_sided,

@@ -45,9 +45,20 @@ TEST_CASE("the broad phase keeps every pair whose boxes meet, each once, from up
         broad_phase.reset();
       }
       const bool changed_only = call > 0 && random.below(2) == 0;
-      broad_phase.update(
-          triangles, [&](std::size_t t) { return boxes[t]; }, random.uniform(0, 0.1),
-          changed_only ? &changed : nullptr);
+      std::size_t meeting = 0;
+      for (std::uint32_t i = 0; i < boxes.size(); ++i)
+        for (std::uint32_t j = i + 1; j < boxes.size(); ++j) meeting += boxes[i].meets(boxes[j]) && !neighbours(i, j);
+      const auto box = [&](std::size_t t) { return boxes[t]; };
+      const double margin = random.uniform(0, 0.1);
+      if (random.below(3) == 0) {  // one too many: another step begins
+        if (meeting > 0) {
+          CHECK(!broad_phase.update(triangles, box, margin, changed_only ? &changed : nullptr, meeting - 1));
+          CHECK(broad_phase.pairs().empty());
+        }
+        CHECK(broad_phase.update(triangles, box, margin, changed_only ? &changed : nullptr, meeting));
+        CHECK(broad_phase.pairs().size() <= meeting);
+      }
+      broad_phase.update(triangles, box, margin, changed_only ? &changed : nullptr);
       const std::set<BroadPhase::Pair> pairs(broad_phase.pairs().begin(), broad_phase.pairs().end());
       CHECK(pairs.size() == broad_phase.pairs().size());
       std::size_t missing = 0;
@@ -68,6 +79,31 @@ TEST_CASE("the broad phase keeps every pair whose boxes meet, each once, from up
       }
     }
   }
+}
+
+TEST_CASE("a motion is halved until its pairs are few, and no more than eight times") {
+  const std::uint32_t n = 2000;
+  std::vector<Triangle> triangles;
+  for (std::uint32_t t = 0; t < n; ++t) triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  double motion = 1;
+  int halvings = 0;
+  const auto halve = [&] { motion /= 2, ++halvings; };
+  BroadPhase broad_phase;
+  const auto apart = [&](std::size_t t) {
+    const Vec3 at(double(t), 0, 0);
+    return Box3{at, at + motion * Vec3(4.0 * BroadPhase::most_per_triangle, 1, 1)};
+  };
+  CHECK(!broad_phase.update_or_halve(triangles, apart, 0, halve));
+  CHECK(halvings == 2);
+  CHECK(broad_phase.pairs().size() <= BroadPhase::most_per_triangle * n);
+  CHECK(broad_phase.update_or_halve(triangles, apart, 0, halve));
+  CHECK(halvings == 2);
+  broad_phase.reset();
+  // Boxes with a common corner meet, however small they are.
+  const auto together = [&](std::size_t t) { return Box3{{0, 0, 0}, Vec3::Constant(motion * double(t + 1))}; };
+  CHECK(!broad_phase.update_or_halve(triangles, together, 0, halve));
+  CHECK(halvings == 10);
+  CHECK(broad_phase.pairs().size() == n * (n - 1) / 2);
 }
 
 TEST_CASE("fans visit each pair of triangles with a common vertex once") {

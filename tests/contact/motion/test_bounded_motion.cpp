@@ -111,6 +111,27 @@ TEST_CASE("from a certified guess vertices only come nearer, and another guess i
                    10);  // the exceptions took the fallback, which does not end at its own result
 }
 
+TEST_CASE("a wild motion ends after a bounded effort, and nothing crosses") {
+  const auto [first, count] = seeds(2);
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Soup s;  // two thin plates, whose vertices are all thrown about
+    for (int plate = 0; plate < 2; ++plate) s.add(make_block({1, 1, 0.04}, 0.04), {0, 0, 0.05 * plate}, 1);
+    REQUIRE(s.crossings(s.from) == 0);
+    for (const Vec3& x : s.from) s.to.push_back(x + random.uniform(0, 0.5) * random.direction());
+    BoundedMotionStats report;
+    BroadPhase near;
+    const std::vector<Vec3> at =
+        move_without_crossing({s.triangles, s.representative, s.from, s.to, 1e-4, 2e-3}, false, &report, &near);
+    CHECK(s.crossings(at) == 0);
+    CHECK(near.pairs().size() <= BroadPhase::most_per_triangle * s.triangles.size());
+    CHECK(report.looked_at > 900 * s.triangles.size());
+    CHECK(report.looked_at < 1200 * s.triangles.size());
+    CHECK(at != s.from);
+  }
+}
+
 TEST_CASE("a surface that is clear of everything reaches its targets, to the bit") {
   Soup s;
   s.add(make_sphere(2), {0, 0, 0}, 1);

@@ -32,9 +32,9 @@ class BroadPhase {
   bool update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
               const std::vector<std::uint8_t>* changed = nullptr, std::size_t most = ~std::size_t(0));
 
-  /// Updates pairs() for the boxes of a motion. While there are more than most_per_triangle for each
-  /// triangle, calls `halve`, at most eight times; box(t) then has to be that of half the motion.
-  /// Returns whether `halve` was never called.
+  /// Updates pairs() for the boxes of a motion. While there are more than most_per_triangle for
+  /// each triangle, calls `halve`, at most eight times; box(t) then has to be that of half the
+  /// motion. Returns whether `halve` was never called.
   bool update_or_halve(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
                        const std::function<void()>& halve);
 

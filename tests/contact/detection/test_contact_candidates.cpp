@@ -85,6 +85,35 @@ TEST_CASE("every pair that comes within reach is a candidate, separated at the s
   }
 }
 
+TEST_CASE("a wild motion has the candidates of a part of it, whatever the broad phase was used for before") {
+  Random random(11);
+  Sheets m(random, 20, 0.3, 0.5);
+  const std::vector<Vec3> gentle = m.to;
+  for (Vec3& x : m.to) x += random.uniform(0, 20) * random.direction();
+  const auto candidates = [&](const std::vector<Vec3>& to, BroadPhase& broad_phase) {
+    std::set<std::pair<Triangle, Triangle>> found;
+    for (const auto& c : find_contact_candidates({m.triangles, m.itself, m.from, to, 0.01, 0.05}, broad_phase))
+      found.insert(std::minmax(Triangle{c.a.v[0], c.a.v[1], c.a.v[2]}, Triangle{c.b.v[0], c.b.v[1], c.b.v[2]}));
+    return found;
+  };
+  BroadPhase fresh, used, none;
+  const auto expected = candidates(m.to, fresh);
+  CHECK(fresh.pairs().size() <= BroadPhase::most_per_triangle * m.triangles.size());
+  CHECK(!expected.empty());
+  none.update(
+      m.triangles,
+      [&](std::size_t t) {
+        Box3 box;
+        for (const auto v : m.triangles[t]) box.add(m.from[v]), box.add(m.to[v]);
+        return box;
+      },
+      0);
+  CHECK(none.pairs().size() > BroadPhase::most_per_triangle * m.triangles.size());
+  candidates(gentle, used);
+  CHECK(candidates(m.to, used) == expected);
+  CHECK(candidates(m.to, fresh) == expected);
+}
+
 TEST_CASE("a limit keeps the closest candidates between two owners", "[candidates]") {
   Random random(3);
   const Sheets m(random, 6, 0.3, 0.35);

@@ -30,7 +30,7 @@ void advise_huge_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t b
 #endif
 }
 
-void advise_small_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
+void forbid_huge_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) {
 #ifdef __linux__
   advise(at, bytes, MADV_NOHUGEPAGE);
 #endif

@@ -14,9 +14,9 @@ namespace geo {
 /// takes the advice.
 void advise_huge_pages(void* at, std::size_t bytes);
 
-/// Takes that advice back, before the memory is freed. The heap may use it for small objects, and
-/// each of them would then occupy a huge page.
-void advise_small_pages(void* at, std::size_t bytes);
+/// Forbids huge pages there, before memory that was so advised is freed. The heap may use it for
+/// small objects, and each of them would then occupy a huge page.
+void forbid_huge_pages(void* at, std::size_t bytes);
 
 /// An array of fixed size with indeterminate elements. The operating system maps a page when it is
 /// first written, which takes as long as filling it; without an initialising pass, all threads that
@@ -61,7 +61,7 @@ class UninitializedArray {
   struct Release {
     std::size_t bytes = 0;
     /// Frees the elements.
-    void operator()(T* at) const { advise_small_pages(at, bytes), ::operator delete(at, alignment); }
+    void operator()(T* at) const { forbid_huge_pages(at, bytes), ::operator delete(at, alignment); }
   };
   std::unique_ptr<T, Release> at_;
   std::size_t size_ = 0;

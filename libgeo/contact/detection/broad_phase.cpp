@@ -33,11 +33,13 @@ bool BroadPhase::update(std::span<const Triangle> triangles, const std::function
   const auto count = static_cast<std::size_t>(std::count(outside.begin(), outside.end(), 1));
   if (valid && count == 0 && pairs_.size() <= most) return true;
   if (!valid || (count * rebuild_share > triangles.size() && !changed)) {
+    valid_ = false;
     tree_.refit_or_rebuild(std::move(boxes), triangles);
     std::optional<std::vector<Pair>> all = tree_.pairs_up_to(most);
     valid_ = all.has_value(), pairs_ = std::move(all).value_or(std::vector<Pair>());
     return valid_;
   }
+  valid_ = false;  // until the list is complete
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     if (outside[t]) tree_.enlarge(t, (changed_only ? box(t) : boxes[t]).grown(margin));
   std::erase_if(pairs_, [&](const Pair& p) { return outside[p.first] || outside[p.second]; });
@@ -47,16 +49,23 @@ bool BroadPhase::update(std::span<const Triangle> triangles, const std::function
     return update(triangles, box, margin, nullptr, most);
   }
   pairs_.insert(pairs_.end(), added->begin(), added->end());
-  return true;
+  return valid_ = true;
 }
 
-bool BroadPhase::update_or_halve(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box,
-                                 double margin, const std::function<void()>& halve) {
-  constexpr int most_halvings = 8;
-  for (int halvings = 0; halvings < most_halvings; ++halvings, halve())
-    if (update(triangles, box, margin, nullptr, most_per_triangle * triangles.size())) return halvings == 0;
-  update(triangles, box, margin);
-  return false;
+double BroadPhase::update_for_share(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box,
+                                    double margin, const std::function<void(double)>& take) {
+  constexpr double least_share = 1.0 / 128;
+  most_of_motion_ = most_per_triangle * triangles.size();
+  if (update(triangles, box, margin, nullptr, most_of_motion_)) return 1;
+  // Long triangles that are oblique to the axes have many pairs at rest.
+  take(0), update(triangles, box, margin);
+  most_of_motion_ += pairs_.size();
+  for (double share = 1; share >= least_share; share /= 2) {
+    take(share);
+    if (update(triangles, box, margin, nullptr, most_of_motion_)) return share;
+  }
+  take(0), update(triangles, box, margin);
+  return 0;
 }
 
 }  // namespace geo

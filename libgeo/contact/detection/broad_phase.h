@@ -18,8 +18,8 @@ class BroadPhase {
  public:
   /// Indices of two triangles.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
-  /// Pairs per triangle that a motion should have at most. With more, it takes triangles far past
-  /// each other, and its cost has no bound.
+  /// Pairs per triangle, on average, that a motion may add to those at rest. With more, it takes
+  /// triangles far past each other, and its cost has no bound.
   static constexpr std::size_t most_per_triangle = 200;
 
   /// Updates pairs() for new boxes, box(t) for triangle t. With `changed`, only marked triangles
@@ -32,11 +32,14 @@ class BroadPhase {
   bool update(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
               const std::vector<std::uint8_t>* changed = nullptr, std::size_t most = ~std::size_t(0));
 
-  /// Updates pairs() for the boxes of a motion. While there are more than most_per_triangle for
-  /// each triangle, calls `halve`, at most eight times; box(t) then has to be that of half the
-  /// motion. Returns whether `halve` was never called.
-  bool update_or_halve(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box, double margin,
-                       const std::function<void()>& halve);
+  /// Updates pairs() for the largest share of a motion, 1, 1/2, … 1/128 or 0, with at most
+  /// most_of_motion() pairs, and returns it. box(t) is that of the whole motion at first; take(share)
+  /// has to change it to that of a share.
+  double update_for_share(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box,
+                          double margin, const std::function<void(double)>& take);
+  /// Pairs that the motion of the last update_for_share() may have: 200 per triangle, and those at
+  /// rest if the whole motion has more than that.
+  std::size_t most_of_motion() const { return most_of_motion_; }
 
   /// Pairs i < j, each once, in no order that results may depend on.
   const std::vector<Pair>& pairs() const { return pairs_; }
@@ -52,6 +55,7 @@ class BroadPhase {
   TrianglePlanes planes_;
   AabbTree tree_;
   bool valid_ = false;  // tree_ has the boxes of this step
+  std::size_t most_of_motion_ = 0;
   std::vector<Pair> pairs_;
 };
 

@@ -112,14 +112,15 @@ void update_broad_phase(const SurfaceMotion& m, const RepresentativeSurface& sur
   // Boxes contain the start, too: a vertex may stay there.
   Vec3 start_centroid = Vec3::Zero();
   for (const auto v : surface.vertices) start_centroid += m.from[v] / double(surface.vertices.size());
-  std::vector<Vec3> to = m.to;
+  std::vector<Vec3> part;
+  const std::vector<Vec3>* to = &m.to;
   const auto box_of = [&](std::size_t t) {
-    Box3 box = surface.swept_box(t, fitted, to);
+    Box3 box = surface.swept_box(t, fitted, *to);
     for (const auto v : surface.triangles[t]) box.add(m.from[v] - start_centroid);
     return box.grown(0.5 * m.reach);
   };
-  broad_phase.update_or_halve(m.triangles, box_of, 0, [&] {
-    for (const auto v : surface.vertices) to[v] = 0.5 * (fitted[v] + to[v]);
+  broad_phase.update_for_share(m.triangles, box_of, 0, [&](double share) {
+    part = share_of_motion(surface.vertices, fitted, m.to, share), to = &part;
   });
 }
 

@@ -23,6 +23,16 @@ struct SurfaceMotion {
   const std::vector<Vec3>* guess = nullptr;
 };
 
+/// A share of the straight motion of some vertices from `start` to `end`; the others stay. A share
+/// of 0 does not read `end`.
+inline std::vector<Vec3> share_of_motion(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& start,
+                                         const std::vector<Vec3>& end, double share) {
+  std::vector<Vec3> part = start;
+  if (share > 0)
+    for (const auto v : vertices) part[v] = share < 1 ? Vec3(start[v] + share * (end[v] - start[v])) : end[v];
+  return part;
+}
+
 /// The surface of a motion in terms of representatives: coincident vertices are one vertex.
 struct RepresentativeSurface {
   /// Represents the surface of `motion`.

@@ -20,7 +20,7 @@ namespace {
 // Limits of effort. None changes whether something crosses; they bound what one step may cost.
 constexpr int max_rounds = 8;          // of motion and reduction of the tracking error; more: nearer to the targets
 constexpr int max_projections = 240;   // in all rounds; what is left takes the fallback
-constexpr int max_looks = 1000;        // of projections at constraints, per triangle; then no further round
+constexpr int max_evaluations = 1000;  // of constraints, per triangle, in all projections; then no further round
 constexpr int patience = 6;            // projections without progress, after which pairs become rigid
 constexpr int max_growths = 20;        // of the fallback's set of vertices
 constexpr int growths_to_follow = 10;  // after which all vertices follow the field
@@ -55,16 +55,17 @@ class CrossingFreeMotion {
         break;
       }
       stats_.planes += advance_vertices(surface_.triangles, m_.to, edge_, m_.gap, at_);
-      if (outcome == Outcome::fallback || looks_left() == 0) break;
+      if (outcome == Outcome::fallback || evaluations_left() == 0) break;
     }
-    stats_.looked_at += looks_;
+    stats_.evaluations += evaluations_;
     for (std::size_t v = 0; v < at_.size(); ++v) at_[v] = at_[m_.representative[v]];
     return std::move(at_);
   }
 
  private:
   // How a round ended. free: all vertices went straight to their projected targets. fallback: some
-  // followed the fallback's field, unscaled. scaled_down: the field was scaled by a share < 1.
+  // followed the fallback's field, unscaled, or another round would end as this one. scaled_down:
+  // motion or field were scaled by a share < 1.
   enum class Outcome { free, fallback, scaled_down };
 
   // Chunked sums, the same for any number of threads.
@@ -84,29 +85,33 @@ class CrossingFreeMotion {
     return std::none_of(surface_.vertices.begin(), surface_.vertices.end(), [&](auto v) { return at_[v] != m_.to[v]; });
   }
 
-  std::size_t looks_left() const {
-    const std::size_t most = max_looks * surface_.triangles.size();
-    return most - std::min(most, looks_);
+  std::size_t evaluations_left() const {
+    const std::size_t most = max_evaluations * surface_.triangles.size();
+    return most - std::min(most, evaluations_);
   }
 
   Outcome advance(int round) {
     std::vector<Vec3> start = at_;
     if (round == 0) apply_affine_fit(surface_.vertices, at_, m_.to, start);
     std::vector<Vec3> next = straight(start, round == 0 && m_.guess ? *m_.guess : m_.to);
-    const bool whole = shorten(start, next);
+    const double share = shorten(start, next);
     if (project_targets(start, next)) {
       at_ = std::move(next);
-      return whole ? Outcome::free : Outcome::scaled_down;
+      return share == 1 ? Outcome::free : share > 0 ? Outcome::scaled_down : Outcome::fallback;
     }
     return fall_back(start);
   }
 
-  // Halves a motion that takes triangles far past each other, and finds near pairs. Returns whether
-  // that left the motion as it was. Its rest is left to the next round.
-  bool shorten(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
-    return near_.update_or_halve(m_.triangles, swept(start, next), box_margin * edge_, [&] {
-      for (const auto v : surface_.vertices) next[v] = 0.5 * (start[v] + next[v]);
-    });
+  // Finds near pairs for the largest share of a motion without too many of them, which becomes the
+  // motion. Returns this share.
+  double shorten(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
+    std::vector<Vec3> part;
+    const std::vector<Vec3>* end = &next;
+    const double share = near_.update_for_share(
+        m_.triangles, [&](std::size_t t) { return surface_.swept_box(t, start, *end); }, box_margin * edge_,
+        [&](double s) { part = share_of_motion(surface_.vertices, start, next, s), end = &part; });
+    if (share < 1) next = std::move(part);
+    return share;
   }
 
   // The end of a straight motion of all vertices in use.
@@ -131,7 +136,7 @@ class CrossingFreeMotion {
     std::size_t fewest = ~std::size_t(0);  // uncertified pairs at the last progress
     int last_progress = 0;                 // the iteration of it
     bool certified = false;
-    for (int i = 0; projections_ < max_projections && looks_left() > 0; ++i, ++projections_) {
+    for (int i = 0; projections_ < max_projections && evaluations_left() > 0; ++i, ++projections_) {
       const auto uncertified = certify.uncertified_pairs(near_.pairs(), changed, rigid);
       certified = uncertified.empty();
       if (certified) break;
@@ -141,10 +146,10 @@ class CrossingFreeMotion {
         projection.add(uncertified, next);
       else
         projection.make_rigid(uncertified), fewest = uncertified.size(), last_progress = i;
-      looks_ += projection.project(next, looks_left());
+      evaluations_ += projection.project(next, evaluations_left());
       if (next == before) {
         if (!projection.make_rigid(uncertified)) break;
-        looks_ += projection.project(next, looks_left());
+        evaluations_ += projection.project(next, evaluations_left());
       }
       mark_changed(before, next, changed);
       for (const auto& [s, t] : uncertified) changed[s] = changed[t] = 1;  // to be tested again if unmoved, too
@@ -157,8 +162,9 @@ class CrossingFreeMotion {
   // Moves at_ from `start`, by the fallback where the straight motion is not certified.
   Outcome fall_back(const std::vector<Vec3>& start) {
     std::vector<Vec3> next = straight(start, m_.to);
-    const bool whole = shorten(start, next);
+    const double share = shorten(start, next);
     const std::vector<Vec3> to = next;
+    bool moves_as_one = false;
     MotionCertifier certify = certifier(start, next);
     std::optional<FallbackMotion> fallback;
     const MotionCertifier::KnownDisjoint kept_apart = [&](std::uint32_t s, std::uint32_t t, double distance) {
@@ -171,21 +177,19 @@ class CrossingFreeMotion {
       if (!fallback) fallback.emplace(surface_.triangles, surface_.vertices, start, to, edge_);
       bool grown = fallback->add(uncertified);
       if (growth == growths_to_follow) grown |= fallback->add_all();
-      if (!grown || growth == max_growths) {
-        move_as_one(start, next);
-        break;
-      }
+      moves_as_one = !grown || growth == max_growths;
+      if (moves_as_one) break;
       const std::vector<Vec3> before = next;
       fallback->apply(next);
       mark_changed(before, next, changed);
-      if (!update_near(start, next, changed)) {
-        move_as_one(start, next);
-        break;
-      }
+      moves_as_one = !update_near(start, next, changed);
+      if (moves_as_one) break;
     }
+    if (moves_as_one) move_as_one(start, next);
     if (fallback) stats_.in_zones = std::max(stats_.in_zones, fallback->in_zones());
     at_ = std::move(next);
-    return whole && (!fallback || fallback->share() == 1) ? Outcome::fallback : Outcome::scaled_down;
+    if (share < 1) return share == 0 || moves_as_one ? Outcome::fallback : Outcome::scaled_down;
+    return !fallback || fallback->share() == 1 ? Outcome::fallback : Outcome::scaled_down;
   }
 
   // Marks triangles with a vertex that has moved.
@@ -220,8 +224,7 @@ class CrossingFreeMotion {
   // motion; if not, near_ has none.
   bool update_near(const std::vector<Vec3>& start, const std::vector<Vec3>& next,
                    const std::vector<std::uint8_t>& changed) {
-    return near_.update(m_.triangles, swept(start, next), box_margin * edge_, &changed,
-                        BroadPhase::most_per_triangle * m_.triangles.size());
+    return near_.update(m_.triangles, swept(start, next), box_margin * edge_, &changed, near_.most_of_motion());
   }
 
   // The boxes that triangles sweep.
@@ -238,7 +241,7 @@ class CrossingFreeMotion {
   std::vector<Vec3> at_;            // per vertex; current for representatives only
   double edge_ = 0, rounding_ = 0;  // model units
   int projections_ = 0;             // so far
-  std::size_t looks_ = 0;           // at constraints, in all projections
+  std::size_t evaluations_ = 0;     // of constraints, in all projections
 };
 
 }  // namespace

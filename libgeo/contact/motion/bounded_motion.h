@@ -11,10 +11,10 @@ namespace geo {
 
 /// Statistics of one motion.
 struct BoundedMotionStats {
-  std::size_t planes = 0;     ///< separating planes between triangles that might have met
-  std::size_t in_zones = 0;   ///< vertices that moved in rigid impact zones, at most at a time
-  std::size_t looked_at = 0;  ///< constraints that were looked at, over all sweeps of all projections
-  bool held = false;          ///< not even a rigid motion was possible, so nothing moved
+  std::size_t planes = 0;       ///< separating planes between triangles that might have met
+  std::size_t in_zones = 0;     ///< vertices that moved in rigid impact zones, at most at a time
+  std::size_t evaluations = 0;  ///< of separation constraints, in all sweeps of all projections
+  bool held = false;            ///< not even a rigid motion was possible, so nothing moved
 };
 
 /// Positions at the end of the motion, per vertex; coincident vertices stay coincident. No
@@ -31,9 +31,9 @@ struct BoundedMotionStats {
 ///    error that this leaves is reduced (vertex_advance.h). If the field was scaled down, the
 ///    motion begins again from there.
 ///
-/// The effort is bounded: a motion that takes triangles far past each other is halved
-/// (BroadPhase::most_per_triangle), and the rest is left to the next of eight rounds. Projections
-/// look at 1,000 constraints per triangle and then finish their sweep; no round follows.
+/// The effort is bounded. Of a motion that takes triangles far past each other, a round has a share
+/// (BroadPhase::update_for_share()); there are eight rounds. Projections evaluate 1,000 constraints
+/// per triangle and then finish their sweep; no round follows.
 ///
 /// `near`: pairs known of the same triangles, from find_contact_candidates() or an earlier motion
 /// in this step; `fans`: of the triangles; null: made here. `two_sided`: as in find_crossings().

@@ -90,7 +90,7 @@ bool SeparationProjection::make_rigid(std::span<const Pair> pairs) {
   return changed;
 }
 
-std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t most_looks) const {
+std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t most_evaluations) const {
   constexpr int max_sweeps = 30;  // bounds the effort; bounded_motion.cpp tests and projects again
   constexpr double margin = 0.1;  // of a constraint's separation: projections do not end on its bound
   const ConstraintsOfVertices of_vertex(next.size(), constraints_);
@@ -107,9 +107,9 @@ std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t m
   const auto mark_moved = [&](std::uint32_t v) {
     if (!has_moved[v]) has_moved[v] = 1, moved.push_back(v);
   };
-  std::size_t looked_at = 0;
-  for (int sweep = 0; sweep < max_sweeps && !active.empty() && looked_at < most_looks; ++sweep) {
-    looked_at += active.size();
+  std::size_t evaluations = 0;
+  for (int sweep = 0; sweep < max_sweeps && !active.empty() && evaluations < most_evaluations; ++sweep) {
+    evaluations += active.size();
     for (const auto i : active) {
       if (rigid[i]) continue;
       const Constraint& c = constraints_[i];
@@ -142,7 +142,7 @@ std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t m
       active[count] = i, count += becomes_active[i], becomes_active[i] = 0;
     active.resize(count);
   }
-  return looked_at;
+  return evaluations;
 }
 
 }  // namespace geo

@@ -33,8 +33,8 @@ class BroadPhase {
               const std::vector<std::uint8_t>* changed = nullptr, std::size_t most = ~std::size_t(0));
 
   /// Updates pairs() for the largest share of a motion, 1, 1/2, … 1/128 or 0, with at most
-  /// most_of_motion() pairs, and returns it. box(t) is that of the whole motion at first; take(share)
-  /// has to change it to that of a share.
+  /// most_of_motion() pairs, and returns it. box(t) is that of the whole motion at first;
+  /// take(share) has to change it to that of a share.
   double update_for_share(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box,
                           double margin, const std::function<void(double)>& take);
   /// Pairs that the motion of the last update_for_share() may have: 200 per triangle, and those at

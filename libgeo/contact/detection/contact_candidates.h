@@ -39,7 +39,7 @@ struct CandidateLimit {
 /// pair is culled if one axis has start separation ≥ motion.gap and end separation ≥ motion.reach.
 /// The set depends on the motion alone; its order depends on the history of `broad_phase`, too.
 /// With a limit, each two owners keep their limit.most pairs of least
-/// TrianglePlanes::end_separations(). Of a motion with too many pairs of boxes, only those of a
+/// TrianglePlanes::end_separations(). If a motion has too many pairs of boxes, only those of a
 /// share are considered (BroadPhase::update_for_share()), from the affine motion on. The whole
 /// motion decides about them. Updates `broad_phase`, whose boxes are relative to the affine motion
 /// that fits the surface best.

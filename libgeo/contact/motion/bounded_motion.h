@@ -31,9 +31,9 @@ struct BoundedMotionStats {
 ///    error that this leaves is reduced (vertex_advance.h). If the field was scaled down, the
 ///    motion begins again from there.
 ///
-/// The effort is bounded. Of a motion that takes triangles far past each other, a round has a share
-/// (BroadPhase::update_for_share()); there are eight rounds. Projections evaluate 1,000 constraints
-/// per triangle and then finish their sweep; no round follows.
+/// The effort is bounded. If a motion takes triangles far past each other, a round has a share of
+/// it (BroadPhase::update_for_share()); there are eight rounds. Projections evaluate 1,000
+/// constraints per triangle and then finish their sweep; no round follows.
 ///
 /// `near`: pairs known of the same triangles, from find_contact_candidates() or an earlier motion
 /// in this step; `fans`: of the triangles; null: made here. `two_sided`: as in find_crossings().

@@ -138,8 +138,8 @@ TEST_CASE("a motion past many triangles goes on in rounds") {
   Random random(4);
   Soup s;
   const Vec3 normal = Vec3(1, 1, 1).normalized(), u = normal.unitOrthogonal(), v = normal.cross(u);
-  for (std::uint32_t layer = 0; layer < 1500; ++layer) {
-    const Vec3 middle = 0.002 * layer * normal + random.uniform(-1, 1) * u + random.uniform(-1, 1) * v;
+  for (std::uint32_t layer = 0; layer < 2000; ++layer) {
+    const Vec3 middle = 0.0005 * layer * normal + random.uniform(-0.5, 0.5) * u + random.uniform(-0.5, 0.5) * v;
     const double turn = random.uniform(0, 2 * M_PI);
     for (int k = 0; k < 3; ++k) {
       const double angle = turn + k * 2 * M_PI / 3;

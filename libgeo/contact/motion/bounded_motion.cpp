@@ -116,9 +116,7 @@ class CrossingFreeMotion {
 
   // The end of a straight motion of all vertices in use.
   std::vector<Vec3> straight(const std::vector<Vec3>& start, const std::vector<Vec3>& to) const {
-    std::vector<Vec3> next = start;
-    for (const auto v : surface_.vertices) next[v] = to[v];
-    return next;
+    return share_of_motion(surface_.vertices, start, to, 1);
   }
 
   MotionCertifier certifier(const std::vector<Vec3>& start, const std::vector<Vec3>& next) {

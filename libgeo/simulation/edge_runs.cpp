@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/resolution.h"
 #include "kerf/parallel.h"
 #include "simulation/edge_retreat.h"
 
@@ -33,13 +34,13 @@ class EdgeSampler {
  public:
   EdgeSampler(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
               std::span<const EdgeFront> fronts)
-      : map_(map), body_(body), blade_(blade), pose_(pose), fronts_(fronts) {}
+      : map_(map), body_(body), blade_(blade), pose_(pose), fronts_(fronts), resolution_(body.surface.extent().diagonal()) {}
 
   Sample at(double parameter) {
     Sample s{parameter, pose_ * place_on(blade_, parameter), {}, false, 0, std::numeric_limits<double>::infinity()};
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
-    s.material = place.position, s.within = place.in_support;
+    s.material = resolution_.rounded(place.position), s.within = place.in_support;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
       s.gap =
@@ -72,6 +73,7 @@ class EdgeSampler {
   const Blade& blade_;
   const Pose& pose_;
   std::span<const EdgeFront> fronts_;
+  Resolution resolution_;
   InverseDeformation::VertexCache memory_;
 };
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "contact/response/blade_penalty.h"
+#include "geometry/resolution.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
@@ -401,11 +402,13 @@ Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, s
                                                        const MapAt& half, const Blade& blade,
                                                        const FrontAnchor& anchor) const {
   Advance a;
+  const Resolution resolution(body.surface.extent().diagonal());
   std::vector<Vec3> mapped;
   a.edge = refined(front, run, mapped);
   for (const double at : a.edge.at) {
     const EdgePoint& p = nearest(run, at);
-    a.to.push_back(anchor.corrected(p.at, p.material, p.spacing)), a.spacing.push_back(p.spacing);
+    a.to.push_back(resolution.rounded(anchor.corrected(p.at, p.material, p.spacing)));
+    a.spacing.push_back(p.spacing);
   }
   a.retreating = hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
   a.rests = rests(a.edge.front, mapped, a.spacing, a.to);

@@ -15,7 +15,7 @@ std::vector<Vec3> surface_targets(const SurfaceWeights& weights, const std::vect
   std::vector<Vec3> result = weights.interpolate(all, u);
   parallel_for(result.size(), vertices_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      if (weights.alive(v)) result[v] = weights.rest(v) + (result[v] + weights.rotated(v));
+      if (weights.alive(v)) result[v] = weights.placed(v, result[v]);
   });
   return result;
 }
@@ -29,7 +29,7 @@ const std::vector<Vec3>& SurfaceTargetCache::at(const SurfaceWeights& weights, c
     const auto offsets = weights.interpolate(stale_, u);
     for (std::size_t i = 0; i < offsets.size(); ++i) {
       const auto v = stale_[i];
-      targets_[v] = weights.alive(v) ? Vec3(weights.rest(v) + (offsets[i] + weights.rotated(v))) : Vec3(Vec3::Zero());
+      targets_[v] = weights.alive(v) ? weights.placed(v, offsets[i]) : Vec3(Vec3::Zero());
     }
   } else {
     targets_ = surface_targets(weights, u);

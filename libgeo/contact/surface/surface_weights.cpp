@@ -60,6 +60,7 @@ class StencilSums {
 
 void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
   stencils_.clear(), heaviest_.clear(), rest_.clear(), norm_.clear(), area_.clear(), arms_.clear(), changed_.clear();
+  resolution_ = Resolution(body.surface.extent().diagonal());
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
   compute(body, solid, all);

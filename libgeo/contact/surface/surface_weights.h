@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/resolution.h"
 #include "kerf/body.h"
 #include "kerf/solid.h"
 #include "mechanics/terms/potential.h"
@@ -41,6 +42,11 @@ class SurfaceWeights {
   bool alive(std::size_t v) const { return !std::isnan(rest_[v][0]); }
   /// The position of surface vertex v at rest. Precondition: it is alive.
   const Vec3& rest(std::size_t v) const { return rest_[v]; }
+  /// The position of surface vertex v by Eq. 1. `displacement`: interpolate() of the nodes' ones.
+  /// Moves from rest by multiples of the model's resolution. Precondition: v is alive.
+  Vec3 placed(std::size_t v, const Vec3& displacement) const {
+    return rest_[v] + resolution_.rounded(Vec3(displacement + rotated(v)));
+  }
   /// vertex_area() of surface vertex v, model units².
   double area(std::size_t v) const { return area_[v]; }
   /// weight_norm() of the stencil of surface vertex v.
@@ -62,6 +68,7 @@ class SurfaceWeights {
   };
   void compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices);
 
+  Resolution resolution_{0};  // of the body
   std::vector<std::vector<Entry>> stencils_;
   std::vector<std::uint32_t> heaviest_;
   std::vector<Vec3> rest_;  // per vertex; not a number: dead

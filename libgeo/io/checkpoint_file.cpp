@@ -101,6 +101,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
     about["fronts"].push_back(nlohmann::ordered_json::array());
     for (const EdgeFront& edge : blade) {
       about["fronts"].back().push_back(about_front(edge.front, places));
+      about["fronts"].back().back()["left"] = edge.is_left;
       at.insert(at.end(), edge.at.begin(), edge.at.end());
     }
   }
@@ -161,7 +162,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
     for (const auto& blade : about.at("fronts")) {
       state.fronts.emplace_back();
       for (const auto& front : blade) {
-        EdgeFront edge{front_from(front, places, file), {}};
+        EdgeFront edge{.front = front_from(front, places, file), .at = {}, .is_left = front.value("left", false)};
         for (std::size_t i = 0; i < edge.front.points.size(); ++i) edge.at.push_back(at.next());
         state.fronts.back().push_back(std::move(edge));
       }

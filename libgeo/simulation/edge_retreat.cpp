@@ -3,45 +3,23 @@
 #include "simulation/edge_retreat.h"
 
 #include <algorithm>
-#include <limits>
 
-#include "geometry/distance.h"
+#include "simulation/own_cut.h"
 
 namespace geo {
 namespace {
-
-// The distance of a point from the polyline of a front, contacts included.
-double distance_from_front(const FrontState& front, const Vec3& point) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& segment : front.segments)
-    for (std::size_t k = 0; k + 1 < segment.size(); ++k)
-      least = std::min(least, distance_between_segments(point, point, segment[k].position, segment[k + 1].position));
-  return least;
-}
 
 // True where the way from a front point to `to` leads back along the sheet of the crack.
 bool retreats(const Complex& surface, const FrontState& front, const Vec3& from, const Vec3& to, double spacing) {
   const auto behind = [&](const Vec3& y, double slope) {
     const double ahead = distance_from_front(front, y);
-    return ahead > 0 && distance_from_crack(surface, front.crack, y, 0.25 * spacing) < slope * ahead;
+    return ahead > 0 && distance_from_cracks(surface, {&front.crack, 1}, y, 0.25 * spacing) < slope * ahead;
   };
   // Half the way: a blade that is pulled out ends in air, but its way begins along the sheet.
   return behind(to, 0.5) || behind(0.5 * (from + to), 0.1);
 }
 
 }  // namespace
-
-double distance_from_crack(const Complex& surface, std::int32_t crack, const Vec3& point, double reach) {
-  std::vector<FaceId> near;
-  surface.faces_near(Box3{point, point}.grown(reach), near);
-  double least = std::numeric_limits<double>::infinity();
-  for (const FaceId f : near) {
-    if (surface.face(f).crack != crack) continue;
-    const auto [a, b, c] = surface.corners(f);
-    least = std::min(least, (closest_point_on_triangle(point, a, b, c) - point).norm());
-  }
-  return least < reach ? least : std::numeric_limits<double>::infinity();
-}
 
 std::size_t hold_retreating(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                             std::vector<Vec3>& to) {

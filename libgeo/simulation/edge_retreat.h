@@ -9,10 +9,6 @@
 
 namespace geo {
 
-/// The distance of a point from the nearest living face of a crack; infinity where none is within
-/// `reach`. Lengths in model units.
-double distance_from_crack(const Complex& surface, std::int32_t crack, const Vec3& point, double reach);
-
 /// Holds the points of a front that would go back along the sheet behind it: where `to` is nearer
 /// to the sheet than half its distance from the front, and nearer than a quarter of the spacing.
 /// They keep their places in the front, since no blade makes a cut undone, and a sheet that folds

@@ -8,7 +8,8 @@
 
 #include "geometry/resolution.h"
 #include "kerf/parallel.h"
-#include "simulation/edge_retreat.h"
+#include "body/locate.h"
+#include "simulation/own_cut.h"
 
 namespace geo {
 namespace {
@@ -23,9 +24,10 @@ constexpr double longest_segment = 2;
 struct Sample {
   double at = 0;  // edge parameter
   Vec3 world, material;
-  bool within = false;  // the support of a node
+  bool within = false;     // the support of a node
+  bool is_in_cut = false;  // that of the blade, and no front there can go on
   double spacing = 0;
-  double gap = 0;  // distance to the nearest node, less its support radius
+  double gap = std::numeric_limits<double>::infinity();  // distance to the nearest node, less its support radius
   EdgePoint point() const { return {at, material, spacing}; }
 };
 
@@ -34,10 +36,18 @@ class EdgeSampler {
  public:
   EdgeSampler(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
               std::span<const EdgeFront> fronts)
-      : map_(map), body_(body), blade_(blade), pose_(pose), fronts_(fronts), resolution_(body.surface.extent().diagonal()) {}
+      : map_(map),
+        body_(body),
+        blade_(blade),
+        pose_(pose),
+        fronts_(fronts),
+        own_cut_(body.surface, fronts),
+        resolution_(body.surface.extent().diagonal()) {}
 
   Sample at(double parameter) {
-    Sample s{parameter, pose_ * place_on(blade_, parameter), {}, false, 0, std::numeric_limits<double>::infinity()};
+    Sample s;
+    s.at = parameter;
+    s.world = pose_ * place_on(blade_, parameter);
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
     s.material = resolution_.rounded(place.position), s.within = place.in_support;
@@ -46,6 +56,7 @@ class EdgeSampler {
       s.gap =
           (s.material - body_.nodes.position[place.nearest.index()]).norm() - body_.nodes.radius[place.nearest.index()];
     }
+    s.is_in_cut = s.within && own_cut_.contains(s.material, s.spacing) && !own_cut_.can_go_on(parameter);
     return s;
   }
 
@@ -73,6 +84,7 @@ class EdgeSampler {
   const Blade& blade_;
   const Pose& pose_;
   std::span<const EdgeFront> fronts_;
+  OwnCut own_cut_;
   Resolution resolution_;
   InverseDeformation::VertexCache memory_;
 };
@@ -113,30 +125,120 @@ std::size_t after_outliers(const std::vector<Sample>& samples, std::size_t i, co
   return i;
 }
 
-// True where a run continues a front. Their edge parameters overlap, and there a point of the run
-// is within four spacings, in the material, of the front's point nearest in parameter, or within a
-// quarter of a spacing of its crack.
-bool continues(const std::vector<EdgePoint>& run, const EdgeFront& edge, const Complex& surface) {
+// The samples of each stay in the blade's own cut: first and last index.
+std::vector<std::pair<std::size_t, std::size_t>> stays_in_cut(const std::vector<Sample>& samples) {
+  std::vector<std::pair<std::size_t, std::size_t>> stays;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!samples[i].is_in_cut) continue;
+    if (stays.empty() || stays.back().second + 1 != i)
+      stays.push_back({i, i});
+    else
+      stays.back().second = i;
+  }
+  return stays;
+}
+
+// Takes samples in the blade's own cut out of the material. An edge that crosses its cut is in it
+// for less than a spacing, and stays whole. Otherwise a part in whole material keeps one sample in
+// the cut, so that it ends at the sheet. Returns the samples before which a run ends.
+std::vector<std::uint8_t> leave_own_cut(std::vector<Sample>& samples, const Complex& surface) {
+  std::vector<std::uint8_t> is_end(samples.size() + 1, 0);
+  const auto is_whole = [&](std::size_t i) { return samples[i].within && is_inside(surface, samples[i].material); };
+  for (const auto& [first, last] : stays_in_cut(samples)) {
+    const bool whole_before = first > 0 && is_whole(first - 1);
+    const bool whole_after = last + 1 < samples.size() && is_whole(last + 1);
+    const double length = (samples[last].material - samples[first].material).norm();
+    if (whole_before && whole_after && length < samples[first].spacing) continue;
+    for (std::size_t i = first; i <= last; ++i)
+      samples[i].within = (i == first && whole_before) || (i == last && whole_after);
+    if (last == first + 1) is_end[last] = 1;
+  }
+  return is_end;
+}
+
+// The point of a front nearest to an edge parameter.
+const Vec3& place_near(const EdgeFront& edge, double at) {
+  const auto nearer = [&](double a, double b) { return std::abs(a - at) < std::abs(b - at); };
+  const auto k = std::min_element(edge.at.begin(), edge.at.end(), nearer) - edge.at.begin();
+  return edge.front.points[static_cast<std::size_t>(k)].position;
+}
+
+// True where a run continues a front that its edge has just made. Their edge parameters overlap,
+// and there a point of the run is within four spacings, in the material, of the front's point
+// nearest in parameter, or within a quarter of a spacing of its crack.
+bool continues_current(const std::vector<EdgePoint>& run, const EdgeFront& edge, const Complex& surface) {
   const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
-  if (from > to) return false;
   for (const EdgePoint& p : run) {
     if (p.at < from || p.at > to) continue;
-    const auto k = static_cast<std::size_t>(
-        std::min_element(edge.at.begin(), edge.at.end(),
-                         [&](double a, double b) { return std::abs(a - p.at) < std::abs(b - p.at); }) -
-        edge.at.begin());
-    if ((edge.front.points[k].position - p.material).norm() < 4 * p.spacing ||
-        distance_from_crack(surface, edge.front.crack, p.material, 0.25 * p.spacing) < 0.25 * p.spacing)
+    const double reach = 0.25 * p.spacing;
+    if ((place_near(edge, p.at) - p.material).norm() < 4 * p.spacing ||
+        distance_from_cracks(surface, {&edge.front.crack, 1}, p.material, reach) < reach)
       return true;
   }
   return false;
+}
+
+// True where a run comes back to a front that the edge has left: all of its points in the material
+// with the front's edge parameters are in the blade's cut, or within a spacing of the front.
+bool comes_back(const std::vector<EdgePoint>& run, const EdgeFront& edge, const Complex& surface,
+                const OwnCut& own_cut) {
+  if (!has_contact(edge.front)) return false;
+  const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
+  bool any = false;
+  for (const EdgePoint& p : run) {
+    if (p.at < from || p.at > to) continue;
+    if (own_cut.contains(p.material, p.spacing) || (place_near(edge, p.at) - p.material).norm() < p.spacing)
+      any = true;
+    else if (is_inside(surface, p.material))
+      return false;
+  }
+  return any;
+}
+
+// The parts of fronts that become one: their parameters do not overlap.
+class FrontOfRun {
+ public:
+  // Takes the part if there is space for it.
+  bool take(EdgeFront& part) {
+    if (part.at.size() < 2) return false;
+    const auto overlaps = [&](const EdgeFront& p) {
+      return !(part.at.back() < p.at.front() || p.at.back() < part.at.front());
+    };
+    if (std::any_of(parts_.begin(), parts_.end(), overlaps)) return false;
+    parts_.push_back(std::move(part));
+    return true;
+  }
+  // One front; without points where there is no part.
+  EdgeFront join() {
+    if (parts_.empty()) return {};
+    std::sort(parts_.begin(), parts_.end(), [](const auto& a, const auto& b) { return a.at.front() < b.at.front(); });
+    EdgeFront front = std::move(parts_[0]);
+    for (std::size_t i = 1; i < parts_.size(); ++i) front = joined(std::move(front), parts_[i]);
+    front.is_left = false;
+    return front;
+  }
+
+ private:
+  std::vector<EdgeFront> parts_;
+};
+
+// Keeps fronts that the edge has left, where they can go on or tell of a cut.
+void keep_left(std::vector<EdgeFront> left, std::vector<EdgeFront>& fronts) {
+  for (EdgeFront& edge : left) {
+    const auto same_cut = [&](const EdgeFront& f) { return f.front.crack == edge.front.crack && f.front.step > 0; };
+    if (edge.at.empty() || edge.front.step == 0) continue;
+    if (!has_contact(edge.front) && std::any_of(fronts.begin(), fronts.end(), same_cut)) continue;
+    edge.is_left = true;
+    fronts.push_back(std::move(edge));
+  }
 }
 
 }  // namespace
 
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose, std::span<const EdgeFront> fronts) {
-  const std::vector<Sample> samples = sample_edge(map, body, blade, pose, fronts);
+  std::vector<Sample> samples = sample_edge(map, body, blade, pose, fronts);
+  const std::vector<std::uint8_t> is_end = leave_own_cut(samples, body.surface);
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -146,7 +248,7 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
     }
     if (last) i = after_outliers(samples, i, *last);
     const Sample& s = samples[i];
-    if (!last || torn(*last, s)) runs.emplace_back();
+    if (!last || is_end[i] || torn(*last, s)) runs.emplace_back();
     auto& run = runs.back();
     if (run.size() > 1 && (s.material - run.back().material).norm() < 0.05 * s.spacing)
       run.back() = s.point();
@@ -168,26 +270,33 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
 
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
                                  const Complex& surface) {
-  // A front that several runs continue is split half way between each two of them.
-  std::vector<std::vector<std::size_t>> successors(before.size());
-  for (std::size_t e = 0; e < before.size(); ++e)
+  const OwnCut own_cut(surface, before);
+  std::vector<FrontOfRun> parts(runs.size());
+  std::vector<EdgeFront> left;
+  // Fronts in the material come first: one in air has no claim to the edge parameters of these.
+  std::vector<const EdgeFront*> order;
+  for (const EdgeFront& edge : before) order.push_back(&edge);
+  std::stable_partition(order.begin(), order.end(), [](const EdgeFront* e) { return has_contact(e->front); });
+  for (const EdgeFront* edge : order) {
+    std::vector<std::size_t> successors;
     for (std::size_t r = 0; r < runs.size(); ++r)
-      if (continues(runs[r], before[e], surface)) successors[e].push_back(r);
-  std::vector<EdgeFront> fronts(runs.size());
-  for (std::size_t e = 0; e < before.size(); ++e)
-    for (std::size_t h = 0; h < successors[e].size(); ++h) {
-      const std::size_t r = successors[e][h];
+      if (edge->is_left ? comes_back(runs[r], *edge, surface, own_cut) : continues_current(runs[r], *edge, surface))
+        successors.push_back(r);
+    if (successors.empty()) left.push_back(*edge);
+    // A front that several runs continue is split half way between each two of them.
+    for (std::size_t h = 0; h < successors.size(); ++h) {
+      const std::size_t r = successors[h];
       const double infinity = std::numeric_limits<double>::infinity();
-      const double from = h > 0 ? 0.5 * (runs[successors[e][h - 1]].back().at + runs[r].front().at) : -infinity;
+      const double from = h > 0 ? 0.5 * (runs[successors[h - 1]].back().at + runs[r].front().at) : -infinity;
       const double to =
-          h + 1 < successors[e].size() ? 0.5 * (runs[r].back().at + runs[successors[e][h + 1]].front().at) : infinity;
-      const EdgeFront part = successors[e].size() == 1 ? before[e] : part_of(before[e], from, to);
-      if (part.at.size() < 2) continue;
-      if (fronts[r].at.empty())
-        fronts[r] = part;
-      else if (fronts[r].at.back() < part.at.front())
-        fronts[r] = joined(std::move(fronts[r]), part);
+          h + 1 < successors.size() ? 0.5 * (runs[r].back().at + runs[successors[h + 1]].front().at) : infinity;
+      EdgeFront part = successors.size() == 1 ? *edge : part_of(*edge, from, to);
+      if (!parts[r].take(part)) left.push_back(std::move(part));
     }
+  }
+  std::vector<EdgeFront> fronts;
+  for (FrontOfRun& of_run : parts) fronts.push_back(of_run.join());
+  keep_left(std::move(left), fronts);
   return fronts;
 }
 

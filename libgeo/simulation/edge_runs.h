@@ -14,8 +14,10 @@ namespace geo {
 /// blade's own points, samples are inserted where the map bends the edge by more than a fiftieth of
 /// a node spacing, where they are more than two spacings apart, and at the ends of a run. Points
 /// closer than a twentieth of a spacing, in the material, replace the one before. A run ends where
-/// no node is near, and where the edge continues in material that is disconnected from it. Where
-/// the map is not one to one, `fronts` of the edge choose the place: that near to theirs.
+/// no node is near, and where the edge continues in material that is disconnected from it. It also
+/// ends where the edge is in the cut of the blade, unless it crosses that cut within a spacing.
+/// `fronts`: of the blade, those that its edge has left included. Where the map is not one to one,
+/// they choose the place: that near to theirs.
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose, std::span<const EdgeFront> fronts);
 
@@ -23,9 +25,10 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
 std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
                                   std::span<const EdgeFront> fronts);
 
-/// A front for each run: the one among `before` that the run continues. Fronts are joined where a
-/// run continues several, and split where several runs continue one. A run that continues none gets
-/// a front without points.
+/// First a front for each run: the one among `before` that the run continues. Fronts are joined
+/// where a run continues several, and split where several runs continue one. A run that continues
+/// none gets a front without points. Then the fronts that no run continues, as left: the edge continues them
+/// when it comes back through their cut. Of those that have left the material, one a crack remains.
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
                                  const Complex& surface);
 

@@ -24,6 +24,7 @@ namespace geo {
 struct EdgeFront {
   FrontState front;
   std::vector<double> at;  ///< per point, ascending: i + t lies between the blade's points i and i + 1
+  bool is_left = false;    ///< the edge is elsewhere, and goes on here when it comes back through its cut
 };
 
 /// The front of a crack that grows by stress. The growth direction at point i is tangent × normal,

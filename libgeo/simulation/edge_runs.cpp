@@ -9,7 +9,7 @@
 #include "geometry/resolution.h"
 #include "kerf/parallel.h"
 #include "body/locate.h"
-#include "simulation/own_cut.h"
+#include "simulation/existing_cuts.h"
 
 namespace geo {
 namespace {
@@ -20,15 +20,20 @@ constexpr double most_deviation = 0.02;
 // Longest segment of a front, in spacings: a midpoint alone does not see an edge bent twice.
 constexpr double longest_segment = 2;
 
+// The walls of existing cuts are found along an edge to this, in spacings: the shortest segment of a
+// run.
+constexpr double wall_accuracy = 0.05;
+
 // A point of the edge, mapped into the material.
 struct Sample {
   double at = 0;  // edge parameter
   Vec3 world, material;
   bool within = false;     // the support of a node
-  bool is_in_cut = false;  // that of the blade, and no front there can go on
+  bool is_in_cut = false;  // one that exists, and no front there can go on
+  NodeId node;             // the nearest one in the world
   double spacing = 0;
   double gap = std::numeric_limits<double>::infinity();  // distance to the nearest node, less its support radius
-  EdgePoint point() const { return {at, material, spacing}; }
+  EdgePoint point() const { return {.at = at, .material = material, .spacing = spacing, .node = node}; }
 };
 
 // Samples a part of the edge. Not shared between threads: it caches deformed surface vertices.
@@ -41,7 +46,7 @@ class EdgeSampler {
         blade_(blade),
         pose_(pose),
         fronts_(fronts),
-        own_cut_(body.surface, fronts),
+        cuts_(body, fronts),
         resolution_(body.surface.extent().diagonal()) {}
 
   Sample at(double parameter) {
@@ -51,12 +56,13 @@ class EdgeSampler {
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
     s.material = resolution_.rounded(place.position), s.within = place.in_support;
+    s.node = place.nearest;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
       s.gap =
           (s.material - body_.nodes.position[place.nearest.index()]).norm() - body_.nodes.radius[place.nearest.index()];
     }
-    s.is_in_cut = s.within && own_cut_.contains(s.material, s.spacing) && !own_cut_.can_go_on(parameter);
+    s.is_in_cut = s.within && !cuts_.can_go_on(parameter) && cuts_.contain(s.material, s.node);
     return s;
   }
 
@@ -66,10 +72,10 @@ class EdgeSampler {
     if (depth == 0) return;
     const double length = (b.world - a.world).norm(), spacing = std::min(a.spacing, b.spacing);
     if (!a.within && !b.within && std::min(a.gap, b.gap) > length) return;  // no node reaches the points between
-    const bool ends = a.within != b.within;
+    const bool ends = a.within != b.within, meets_cut = a.is_in_cut != b.is_in_cut;
     if ((ends || !a.within) && length < 0.25 * spacing) return;
     const Sample middle = at(0.5 * (a.at + b.at));
-    const bool straight = a.within && b.within && middle.within &&
+    const bool straight = a.within && b.within && middle.within && (!meets_cut || length < wall_accuracy * spacing) &&
                           (b.material - a.material).norm() <= longest_segment * spacing &&
                           (middle.material - 0.5 * (a.material + b.material)).norm() <= most_deviation * spacing;
     if (straight) return;
@@ -84,7 +90,7 @@ class EdgeSampler {
   const Blade& blade_;
   const Pose& pose_;
   std::span<const EdgeFront> fronts_;
-  OwnCut own_cut_;
+  ExistingCuts cuts_;
   Resolution resolution_;
   InverseDeformation::VertexCache memory_;
 };
@@ -125,7 +131,7 @@ std::size_t after_outliers(const std::vector<Sample>& samples, std::size_t i, co
   return i;
 }
 
-// The samples of each stay in the blade's own cut: first and last index.
+// The samples of each stay in a cut: first and last index.
 std::vector<std::pair<std::size_t, std::size_t>> stays_in_cut(const std::vector<Sample>& samples) {
   std::vector<std::pair<std::size_t, std::size_t>> stays;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -138,10 +144,10 @@ std::vector<std::pair<std::size_t, std::size_t>> stays_in_cut(const std::vector<
   return stays;
 }
 
-// Takes samples in the blade's own cut out of the material. An edge that crosses its cut is in it
-// for less than a spacing, and stays whole. Otherwise a part in whole material keeps one sample in
-// the cut, so that it ends at the sheet. Returns the samples before which a run ends.
-std::vector<std::uint8_t> leave_own_cut(std::vector<Sample>& samples, const Complex& surface) {
+// Takes samples in existing cuts out of the material. An edge that crosses a cut is in it for less
+// than a spacing, and stays whole. Otherwise a part in whole material keeps one sample in the cut,
+// so that it ends at the sheet. Returns the samples before which a run ends.
+std::vector<std::uint8_t> leave_cuts(std::vector<Sample>& samples, const Complex& surface) {
   std::vector<std::uint8_t> is_end(samples.size() + 1, 0);
   const auto is_whole = [&](std::size_t i) { return samples[i].within && is_inside(surface, samples[i].material); };
   for (const auto& [first, last] : stays_in_cut(samples)) {
@@ -172,22 +178,22 @@ bool continues_current(const std::vector<EdgePoint>& run, const EdgeFront& edge,
     if (p.at < from || p.at > to) continue;
     const double reach = 0.25 * p.spacing;
     if ((place_near(edge, p.at) - p.material).norm() < 4 * p.spacing ||
-        distance_from_cracks(surface, {&edge.front.crack, 1}, p.material, reach) < reach)
+        distance_from_crack(surface, edge.front.crack, p.material, reach) < reach)
       return true;
   }
   return false;
 }
 
 // True where a run comes back to a front that the edge has left: all of its points in the material
-// with the front's edge parameters are in the blade's cut, or within a spacing of the front.
+// with the front's edge parameters are in a cut, or within a spacing of the front.
 bool comes_back(const std::vector<EdgePoint>& run, const EdgeFront& edge, const Complex& surface,
-                const OwnCut& own_cut) {
+                const ExistingCuts& cuts) {
   if (!has_contact(edge.front)) return false;
   const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
   bool any = false;
   for (const EdgePoint& p : run) {
     if (p.at < from || p.at > to) continue;
-    if (own_cut.contains(p.material, p.spacing) || (place_near(edge, p.at) - p.material).norm() < p.spacing)
+    if (cuts.contain(p.material, p.node) || (place_near(edge, p.at) - p.material).norm() < p.spacing)
       any = true;
     else if (is_inside(surface, p.material))
       return false;
@@ -238,7 +244,7 @@ void keep_left(std::vector<EdgeFront> left, std::vector<EdgeFront>& fronts) {
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose, std::span<const EdgeFront> fronts) {
   std::vector<Sample> samples = sample_edge(map, body, blade, pose, fronts);
-  const std::vector<std::uint8_t> is_end = leave_own_cut(samples, body.surface);
+  const std::vector<std::uint8_t> is_end = leave_cuts(samples, body.surface);
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -269,8 +275,9 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
 }
 
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
-                                 const Complex& surface) {
-  const OwnCut own_cut(surface, before);
+                                 const Body& body) {
+  const Complex& surface = body.surface;
+  const ExistingCuts cuts(body, before);
   std::vector<FrontOfRun> parts(runs.size());
   std::vector<EdgeFront> left;
   // Fronts in the material come first: one in air has no claim to the edge parameters of these.
@@ -280,7 +287,7 @@ std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs
   for (const EdgeFront* edge : order) {
     std::vector<std::size_t> successors;
     for (std::size_t r = 0; r < runs.size(); ++r)
-      if (edge->is_left ? comes_back(runs[r], *edge, surface, own_cut) : continues_current(runs[r], *edge, surface))
+      if (edge->is_left ? comes_back(runs[r], *edge, surface, cuts) : continues_current(runs[r], *edge, surface))
         successors.push_back(r);
     if (successors.empty()) left.push_back(*edge);
     // A front that several runs continue is split half way between each two of them.

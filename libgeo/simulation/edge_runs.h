@@ -15,7 +15,7 @@ namespace geo {
 /// a node spacing, where they are more than two spacings apart, and at the ends of a run. Points
 /// closer than a twentieth of a spacing, in the material, replace the one before. A run ends where
 /// no node is near, and where the edge continues in material that is disconnected from it. It also
-/// ends where the edge is in the cut of the blade, unless it crosses that cut within a spacing.
+/// ends where the edge is in a cut that exists, unless it crosses that cut within a spacing.
 /// `fronts`: of the blade, those that its edge has left included. Where the map is not one to one,
 /// they choose the place: that near to theirs.
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
@@ -30,6 +30,6 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
 /// none gets a front without points. Then the fronts that no run continues, as left: the edge continues them
 /// when it comes back through their cut. Of those that have left the material, one a crack remains.
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
-                                 const Complex& surface);
+                                 const Body& body);
 
 }  // namespace geo

@@ -21,6 +21,7 @@
 #include "simulation/collisions.h"
 #include "simulation/edge_retreat.h"
 #include "simulation/edge_runs.h"
+#include "simulation/existing_cuts.h"
 #include "simulation/fracture_step.h"
 #include "simulation/front_anchor.h"
 #include "simulation/grips.h"
@@ -114,7 +115,8 @@ struct Simulation::Impl {
   void begin_first_cut(const TimeStep& step, std::optional<FirstCut>& first, FrameStats& stats);
   void undo(const std::optional<FirstCut>& first);
   void cut(const TimeStep& step, std::optional<FirstCut> first, FrameStats& stats);
-  std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction);
+  std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction,
+                                               double before);
   int begin_cuts(const MovedBody& moved, std::size_t blade);
   PlannedCut plan_cut(const MovedBody& moved, std::size_t blade, int k, int cuts);
   void make_cut(std::size_t blade, PlannedCut plan, FrameStats& stats);
@@ -327,13 +329,15 @@ void Simulation::Impl::cut(const TimeStep& step, std::optional<FirstCut> first, 
 
 // Maps the edge of a blade that has no fronts yet. Returns the number of its cuts in the step.
 int Simulation::Impl::begin_cuts(const MovedBody& moved, std::size_t b) {
-  if (state.fronts[b].empty()) map_edge(moved, b, 0);
+  if (state.fronts[b].empty()) map_edge(moved, b, 0, 0);
   return number_of_cuts(moved, scene.blades[b], state.fronts[b]);
 }
 
 // The runs of a blade's edge in the material at a fraction of a time step. Its fronts become those
-// that the runs continue; a run without one gets a new front.
-std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& moved, std::size_t b, double fraction) {
+// that the runs continue; a run without one gets a new front. `before`: the fraction at the cut
+// before, where a front begins that comes out of a cut.
+std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& moved, std::size_t b, double fraction,
+                                                               double before) {
   const Blade& blade = scene.blades[b];
   std::vector<EdgeFront>& fronts = state.fronts[b];
   const MapAt at(moved, blade, fraction);
@@ -343,10 +347,12 @@ std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& 
     if (fronts.empty()) fronts.resize(1);
   } else {
     runs = edge_runs(at.map(), body, blade, at.pose(), fronts);
-    fronts = fronts_of(runs, fronts, body.surface);
+    fronts = fronts_of(runs, fronts, body);
   }
   for (std::size_t r = 0; r < runs.size(); ++r)
-    if (fronts[r].at.empty()) fronts[r] = begin_edge(runs[r], unused_crack(), blade.name, blade.closed);
+    if (fronts[r].at.empty())
+      fronts[r] =
+          begin_edge(begin_in_cuts(moved, blade, before, runs[r], fronts), unused_crack(), blade.name, blade.closed);
   return runs;
 }
 
@@ -354,7 +360,7 @@ std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& 
 // body as it is before any of them cuts.
 Simulation::Impl::PlannedCut Simulation::Impl::plan_cut(const MovedBody& moved, std::size_t b, int k, int cuts) {
   const Blade& blade = scene.blades[b];
-  PlannedCut plan{map_edge(moved, b, double(k) / cuts), {}};
+  PlannedCut plan{map_edge(moved, b, double(k) / cuts, (k - 1.0) / cuts), {}};
   plan.advances.resize(plan.runs.size());
   for (std::size_t r = 0; r < plan.runs.size(); ++r) plan.advances[r].rests = rests(state.fronts[b][r], plan.runs[r]);
   if (std::all_of(plan.advances.begin(), plan.advances.end(), [](const Advance& a) { return a.rests; })) return plan;

@@ -1,0 +1,56 @@
+// Cuts that are there already: an edge that moves in one is in air, and cuts nothing.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kerf/body.h"
+#include "kerf/simulation.h"
+#include "simulation/blade_way.h"
+#include "simulation/edge_front.h"
+
+namespace geo {
+
+/// The distance of a point from the nearest living face of a crack; infinity where none is within
+/// `reach`. Lengths in model units.
+double distance_from_crack(const Complex& surface, std::int32_t crack, const Vec3& point, double reach);
+
+/// The distance of a point from the polyline of a front, contacts included; model units.
+double distance_from_front(const FrontState& front, const Vec3& point);
+
+/// Whether a point of the front is on a vertex of K: it lies in the material and can go on.
+bool has_contact(const FrontState& front);
+
+/// The cracks of a body as a blade meets them. The walls of a cut lie on each other in the
+/// material, so an edge between them maps to the sheet, but for the accuracy of the map. A strip
+/// there would leave crumbs beside the sheet. Refers to its arguments.
+class ExistingCuts {
+ public:
+  /// `fronts`: of the blade, those that its edge has left included.
+  ExistingCuts(const Body& body, std::span<const EdgeFront> fronts);
+  /// Whether a place of the blade's edge in the material is in a cut. One of these holds:
+  /// - it is nearer to a sheet than a twentieth of the node spacing, the length that a front resolves;
+  /// - it is nearer to a sheet of this blade than a quarter of it, and than half of its distance from
+  ///   the blade's fronts that can go on, ahead of which the material is whole;
+  /// - a sheet hides it from `node`, the nearest one in the world: it is beyond the wall, in air.
+  bool contain(const Vec3& place, NodeId node) const;
+  /// Whether a front that can go on has this edge parameter. It holds its points in the cut by
+  /// itself (edge_retreat.h).
+  bool can_go_on(double at) const;
+
+ private:
+  bool is_ahead(const Vec3& place, double distance) const;
+
+  const Body& body_;
+  std::span<const EdgeFront> fronts_;
+  std::vector<std::int32_t> own_;  // numbers of this blade's cracks, ascending
+};
+
+/// Where the front of a run begins: each of its points that was in a cut at the fraction `before` of
+/// the time step begins there, so that nothing is left between the cuts; the others where they are.
+/// `fronts`: of the blade.
+std::vector<EdgePoint> begin_in_cuts(const MovedBody& moved, const Blade& blade, double before,
+                                     std::span<const EdgePoint> run, std::span<const EdgeFront> fronts);
+
+}  // namespace geo

@@ -1,0 +1,49 @@
+// Random scenes in which a solid is cut, and the same scenes placed in space in another way.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "kerf/mesh.h"
+#include "kerf/scene.h"
+
+namespace geo {
+
+/// A solid and the scene that cuts it. The scene's model is the mesh, without a pose of its own.
+struct CutScene {
+  TriangleMesh model;
+  Scene scene;
+  std::string about;  ///< what it is, for a failing test
+};
+
+/// A way of placing a scene in space: x ↦ scale · (±x_axis[0], ±x_axis[1], ±x_axis[2]) + offset.
+/// Coordinates are multiplied by powers of two, exchanged and mirrored: nothing is rounded but by
+/// the offset.
+struct Placement {
+  std::string name;
+  std::array<int, 3> axis = {0, 1, 2};
+  std::array<double, 3> sign = {1, 1, 1};
+  double scale = 1;
+  Vec3 offset = Vec3::Zero();  ///< in sizes of the model
+
+  /// Whether it turns right hands into left ones.
+  bool mirrors() const;
+  /// The image of a vector.
+  Vec3 of_vector(const Vec3& v) const;
+};
+
+/// As it is; translated by binary fractions; mirrored in each axis; with axes exchanged; twice and
+/// half as large.
+std::array<Placement, 8> placements();
+
+/// A scene in which one to three blades cut a block, a ball or a torus about the origin, 1 to 2
+/// units large: anywhere, in a symmetry plane, in a face, along lines of the mesh, or next to these by
+/// less than doubles resolve. Seed decides all.
+CutScene random_cut_scene(std::uint64_t seed);
+
+/// The same scene, placed. Times stay: velocities and accelerations scale with lengths, and moduli
+/// with their square.
+CutScene placed(const CutScene& cut, const Placement& way);
+
+}  // namespace geo

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include <kerf/simulation.h>
 #include <kerf/solid.h>
 #include "sim/frame_writer.h"
+#include "sim/review.h"
 #include "sim/setup.h"
 #include "sim/start.h"
 #include "sim/whole_run.h"
@@ -27,6 +29,7 @@ struct Command {
   std::vector<std::string> settings;
   int frames = 0;
   bool resume = false;
+  bool strict = false;
 };
 
 // Estimates the remaining time from the seconds of the last frames.
@@ -83,6 +86,8 @@ class RecordedRun {
         total_(run_.state().total) {}
 
   const geo::Simulation& run() const { return run_; }
+  /// The figures of all frames, those before a resumed run included. Waits until they are written.
+  std::vector<sim::FrameFigures> figures() { return sim::read_figures(writer_.log()); }
   /// Statistics of the run, with the seconds since the program started.
   const geo::FrameStats& total() const { return total_; }
 
@@ -166,6 +171,17 @@ void summarise(const RecordedRun& recorded, const sim::Setup& setup, const sim::
         tool::counted(pieces, "piece") + sim::seconds_in_words(recorded.total()));
 }
 
+// Says what is not as it was asked for. Throws tool::Failure for it where the command is strict.
+void review(RecordedRun& recorded, const sim::Setup& setup, bool strict, const tool::Tool& t) {
+  const std::vector<double>& spacing = recorded.run().body().nodes.spacing;
+  const double mean = std::accumulate(spacing.begin(), spacing.end(), 0.0) / double(spacing.size());
+  std::vector<std::string> faults = sim::faults_of(setup.scene, recorded.figures(), mean);
+  for (std::string& thin : sim::thin_models(setup, recorded.run().body())) faults.push_back(std::move(thin));
+  for (const std::string& fault : faults) t.say("kerf-sim: " + fault);
+  if (strict && !faults.empty())
+    throw tool::Failure("--strict: " + tool::counted(faults.size(), "thing") + " not as asked for; the frames are there");
+}
+
 // Creates the folder and the run in it: resumed, or new with its first frame and checkpoint.
 std::unique_ptr<RecordedRun> open_run(const sim::Setup& setup, const sim::RunFolder& folder, int last, bool resumed,
                                       const tool::Tool& t) {
@@ -208,6 +224,7 @@ void simulate(const Command& command, const tool::Tool& t) {
   geo::report(progress, "done", 1, 1);
   sim::write_whole_run(folder, last, setup.scene.frame_rate, sim::up_axis(setup.scene.gravity));
   summarise(*recorded, setup, folder, last, t);
+  review(*recorded, setup, command.strict, t);
 }
 
 }  // namespace
@@ -225,6 +242,9 @@ int main(int argc, char** argv) {
   t.option("--set", command.settings,
            "Override a key of the scene, as KEY=VALUE; entries of lists by number, as blade.0.divide");
   t.flag("--resume", command.resume, "Continue from the last checkpoint in the output folder; start where it has none");
+  t.flag("--strict", command.strict,
+         "Fail, with exit code 1, where the run is not as asked for: crumbs, crossings, refused steps, thin material, "
+         "lag, energy from nothing");
   t.output("Folder of the run", {"a folder"});
   return t.run(argc, argv, [&] { simulate(command, t); });
 }

@@ -73,6 +73,16 @@ bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, do
 
 }  // namespace
 
+Wall wall_behind(const RegionTree& tree, std::uint32_t triangle, double limit) {
+  const auto& [a, b, c] = tree.corners(triangle);
+  const Vec3 p = (a + b + c) / 3;
+  Wall wall;
+  wall.area = 0.5 * (b - a).cross(c - a).norm();
+  wall.thickness = exit_distance(tree, p, -tree.normal(triangle), limit, triangle, 8);
+  if (wall.thickness < none) wall.at = p - 0.5 * wall.thickness * tree.normal(triangle);
+  return wall;
+}
+
 Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit) {
   Wall wall;
   const Box3 box = lattice.box(cut.cell);

@@ -18,6 +18,10 @@ struct Wall {
 /// tapers off, a blunter one as an edge.
 Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region& cut, double limit);
 
+/// The wall of which a triangle is one side, at the middle of the triangle. Its area is that of the
+/// triangle.
+Wall wall_behind(const RegionTree& tree, std::uint32_t triangle, double limit);
+
 /// The same for a wall that point p is inside, of which `closest` (within limit / 2) is one side.
 Wall wall_around(const RegionTree& tree, const Vec3& p, const TriangleBvh::Closest& closest, double limit);
 

@@ -144,23 +144,48 @@ std::vector<std::pair<std::size_t, std::size_t>> stays_in_cut(const std::vector<
   return stays;
 }
 
-// Takes samples in existing cuts out of the material. An edge that crosses a cut is in it for less
-// than a spacing, and stays whole. Otherwise a part in whole material keeps one sample in the cut,
-// so that it ends at the sheet. Returns the samples before which a run ends.
-std::vector<std::uint8_t> leave_cuts(std::vector<Sample>& samples, const Complex& surface) {
-  std::vector<std::uint8_t> is_end(samples.size() + 1, 0);
-  const auto is_whole = [&](std::size_t i) { return samples[i].within && is_inside(surface, samples[i].material); };
-  for (const auto& [first, last] : stays_in_cut(samples)) {
-    const bool whole_before = first > 0 && is_whole(first - 1);
-    const bool whole_after = last + 1 < samples.size() && is_whole(last + 1);
-    const double length = (samples[last].material - samples[first].material).norm();
-    if (whole_before && whole_after && length < samples[first].spacing) continue;
-    for (std::size_t i = first; i <= last; ++i)
-      samples[i].within = (i == first && whole_before) || (i == last && whole_after);
-    if (last == first + 1) is_end[last] = 1;
+// Takes samples in existing cuts out of the material, and beside them those in air outside the skin.
+// From there, the skin bulges into what the edge sweeps, and a strip would lie on the sheet of the
+// cut. An edge that crosses a cut is in it for less than a spacing, and stays whole. Otherwise a
+// part in whole material keeps one more sample, so that it ends at the sheet or in air.
+class CutLeaver {
+ public:
+  CutLeaver(std::vector<Sample>& samples, const Complex& surface) : samples_(samples), surface_(surface) {}
+
+  // Returns the samples before which a run ends.
+  std::vector<std::uint8_t> run() {
+    std::vector<std::uint8_t> is_end(samples_.size() + 1, 0);
+    for (const auto& [first, last] : stays_in_cut(samples_)) {
+      const bool whole_before = first > 0 && is_whole(first - 1);
+      const bool whole_after = last + 1 < samples_.size() && is_whole(last + 1);
+      const double length = (samples_[last].material - samples_[first].material).norm();
+      if (whole_before && whole_after && length < samples_[first].spacing) continue;
+      for (std::size_t i = first; i <= last; ++i)
+        samples_[i].within = (i == first && whole_before) || (i == last && whole_after);
+      if (last == first + 1) is_end[last] = 1;
+      if (!whole_before) leave_air(first, -1);
+      if (!whole_after) leave_air(last, 1);
+    }
+    return is_end;
   }
-  return is_end;
-}
+
+ private:
+  bool is_whole(std::size_t i) const {
+    return samples_[i].within && !samples_[i].is_in_cut && is_inside(surface_, samples_[i].material);
+  }
+
+  // Takes out the samples in air beside sample `from`, up to the last one before whole material.
+  void leave_air(std::size_t from, std::ptrdiff_t way) {
+    const auto next = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + way); };
+    for (std::size_t i = next(from); i < samples_.size() && samples_[i].within && !samples_[i].is_in_cut; i = next(i)) {
+      if (next(i) < samples_.size() && is_whole(next(i))) return;
+      samples_[i].within = false;
+    }
+  }
+
+  std::vector<Sample>& samples_;
+  const Complex& surface_;
+};
 
 // The point of a front nearest to an edge parameter.
 const Vec3& place_near(const EdgeFront& edge, double at) {
@@ -244,7 +269,7 @@ void keep_left(std::vector<EdgeFront> left, std::vector<EdgeFront>& fronts) {
 std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, const Body& body, const Blade& blade,
                                               const Pose& pose, std::span<const EdgeFront> fronts) {
   std::vector<Sample> samples = sample_edge(map, body, blade, pose, fronts);
-  const std::vector<std::uint8_t> is_end = leave_cuts(samples, body.surface);
+  const std::vector<std::uint8_t> is_end = CutLeaver(samples, body.surface).run();
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
   for (std::size_t i = 0; i < samples.size(); ++i) {

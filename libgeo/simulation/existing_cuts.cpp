@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "body/locate.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "geometry/resolution.h"
@@ -82,7 +83,7 @@ bool ExistingCuts::can_go_on(double at) const {
   });
 }
 
-std::vector<EdgePoint> begin_in_cuts(const MovedBody& moved, const Blade& blade, double before,
+std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
                                      std::span<const EdgePoint> run, std::span<const EdgeFront> fronts) {
   std::vector<EdgePoint> begin(run.begin(), run.end());
   if (moved.body.surface.crack_count() == 0) return begin;
@@ -92,7 +93,8 @@ std::vector<EdgePoint> begin_in_cuts(const MovedBody& moved, const Blade& blade,
   InverseDeformation::VertexCache memory;
   for (EdgePoint& p : begin) {
     const auto place = start.map().to_material(start.pose() * place_on(blade, p.at), memory, &p.material);
-    if (place.in_support && cuts.contain(place.position, place.nearest))
+    if (!place.in_support) continue;
+    if (cuts.contain(place.position, place.nearest) || !is_inside(moved.body.surface, place.position))
       p.material = resolution.rounded(place.position);
   }
   return begin;

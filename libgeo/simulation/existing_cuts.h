@@ -47,10 +47,10 @@ class ExistingCuts {
   std::vector<std::int32_t> own_;  // numbers of this blade's cracks, ascending
 };
 
-/// Where the front of a run begins: each of its points that was in a cut at the fraction `before` of
-/// the time step begins there, so that nothing is left between the cuts; the others where they are.
-/// `fronts`: of the blade.
-std::vector<EdgePoint> begin_in_cuts(const MovedBody& moved, const Blade& blade, double before,
+/// Where the front of a run begins: each of its points that was in a cut, or outside the material, at
+/// the fraction `before` of the time step begins there, so that nothing is left between the cuts.
+/// The others begin where they are. `fronts`: of the blade.
+std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
                                      std::span<const EdgePoint> run, std::span<const EdgeFront> fronts);
 
 }  // namespace geo

@@ -28,7 +28,8 @@ FrameStats& FrameStats::operator+=(const FrameStats& o) {
   sheet.deviation = std::max(sheet.deviation, o.sheet.deviation);
   sheet.turning = std::max(sheet.turning, o.sheet.turning);
   sheet.retreating += o.sheet.retreating, sheet.crumbs = o.sheet.crumbs;
-  energy = o.energy, blade_force = o.blade_force, pull_force = o.pull_force;
+  energy = o.energy, kinetic = o.kinetic, weight = o.weight;
+  blade_force = o.blade_force, pull_force = o.pull_force;
   obstacle_force = o.obstacle_force, obstacle_torque = o.obstacle_torque;
   return *this;
 }

@@ -136,6 +136,7 @@ struct Simulation::Impl {
                       FrameStats& stats);
   void fracture(double dt, FrameStats& stats);
   void require_finite() const;
+  double weight_energy() const;
   double time_of(int frame) const { return frame * (1 / scene.frame_rate); }
 
   Scene scene;
@@ -352,7 +353,7 @@ std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& 
   for (std::size_t r = 0; r < runs.size(); ++r)
     if (fronts[r].at.empty())
       fronts[r] =
-          begin_edge(begin_in_cuts(moved, blade, before, runs[r], fronts), unused_crack(), blade.name, blade.closed);
+          begin_edge(begin_of_run(moved, blade, before, runs[r], fronts), unused_crack(), blade.name, blade.closed);
   return runs;
 }
 
@@ -545,6 +546,14 @@ void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   fracture(step.dt, stats);
 }
 
+// The work that weight would do on the way back to rest, J.
+double Simulation::Impl::weight_energy() const {
+  double energy = 0;
+  for (std::uint32_t i = 0; i < state.motion.displacement.size(); ++i)
+    energy -= solid.mass(NodeId(i)) * scene.gravity.dot(state.motion.displacement[i]);
+  return energy;
+}
+
 void Simulation::Impl::require_finite() const {
   for (std::size_t i = 0; i < state.motion.displacement.size(); ++i)
     if (!state.motion.displacement[i].allFinite())
@@ -647,6 +656,8 @@ FrameStats Simulation::advance_frame(const Progress& progress) {
   ++run.state.frame;
   run.state.surface = run.collisions->living_positions(run.body);
   stats.sheet.crumbs = run.crumbs;
+  stats.kinetic = run.solid.kinetic_energy(run.state.motion);
+  stats.weight = run.weight_energy();
   run.state.total += stats;
   return stats;
 }

@@ -64,15 +64,72 @@ Blade blade_in(const CutPlane& plane, double half, double from, double to, std::
   return blade;
 }
 
+// The image of each part of a scene.
+class Placer {
+ public:
+  explicit Placer(const Placement& way) : way_(way), matrix_(way.matrix()), hand_(matrix_.determinant()) {}
+
+  Vec3 vector(const Vec3& v) const { return way_.scale * (matrix_ * v); }
+  Vec3 point(const Vec3& p) const { return vector(p) + way_.offset; }
+  Vec3 axis(const Vec3& a) const { return hand_ * (matrix_ * a); }
+  void mesh(TriangleMesh& mesh) const {
+    for (Vec3& p : mesh.vertices) p = point(p);
+    turn_over(mesh);
+  }
+  void box(Vec3& lo, Vec3& hi) const {
+    const Vec3 a = point(lo), b = point(hi);
+    lo = a.cwiseMin(b);
+    hi = a.cwiseMax(b);
+  }
+  // Of an object whose own coordinates are mapped as vectors: position ↦ image + offset.
+  void key_about(Motion::Key& key, const Vec3& offset) const {
+    key.position = vector(key.position) + offset;
+    key.axis = axis(key.axis);
+  }
+  void material(Material& material) const { material.young *= way_.scale * way_.scale; }
+  // world = motion(place(scale · mesh)): the motion is conjugated, so that it turns about the image of
+  // the origin.
+  void obstacle(SceneObstacle& obstacle) const {
+    for (Vec3& p : obstacle.mesh.vertices) p = matrix_ * p;
+    turn_over(obstacle.mesh);
+    obstacle.normal = matrix_ * obstacle.normal;
+    obstacle.scale *= way_.scale;
+    obstacle.place.position = point(obstacle.place.position);
+    const Eigen::AngleAxisd turn(obstacle.place.rotation);
+    obstacle.place.rotation = Eigen::AngleAxisd(turn.angle(), axis(turn.axis()));
+    for (Motion::Key& key : obstacle.motion.keys) {
+      key_about(key, way_.offset);
+      key.position -= Eigen::AngleAxisd(key.angle * std::numbers::pi / 180, key.axis.normalized()) * way_.offset;
+    }
+  }
+  void fracture(FractureOptions& fracture) const {
+    strength(fracture);
+    for (Strength& own : fracture.per_body) strength(own);
+    for (auto& [lo, hi] : fracture.off) box(lo, hi);
+  }
+
+ private:
+  void turn_over(TriangleMesh& mesh) const {
+    if (hand_ > 0) return;
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  }
+  void strength(Strength& strength) const {
+    strength.strength *= way_.scale * way_.scale;
+    strength.toughness *= way_.scale * way_.scale * std::sqrt(way_.scale);
+    strength.grain *= way_.scale;
+  }
+
+  const Placement& way_;
+  Mat3 matrix_;
+  double hand_;  // −1: it turns right hands into left ones
+};
+
 }  // namespace
 
-bool Placement::mirrors() const {
-  const bool is_even = axis[1] == (axis[0] + 1) % 3;
-  return (sign[0] * sign[1] * sign[2] < 0) == is_even;
-}
-
-Vec3 Placement::of_vector(const Vec3& v) const {
-  return scale * Vec3(sign[0] * v[axis[0]], sign[1] * v[axis[1]], sign[2] * v[axis[2]]);
+Mat3 Placement::matrix() const {
+  Mat3 m = Mat3::Zero();
+  for (int i = 0; i < 3; ++i) m(i, axis[static_cast<std::size_t>(i)]) = sign[static_cast<std::size_t>(i)];
+  return m;
 }
 
 std::array<Placement, 8> placements() {
@@ -89,22 +146,24 @@ std::array<Placement, 8> placements() {
 CutScene random_cut_scene(std::uint64_t seed) {
   Random random(seed);
   CutScene cut;
+  TriangleMesh mesh;
   double half = 0.5, line = 0;  // half of the model's size; a coordinate of lines of its mesh
   const std::uint32_t shape = random.below(3);
   if (shape == 0) {
     const int squares = 2 + 2 * static_cast<int>(random.below(4));
     const double size = random.below(2) == 0 ? 1 : random.uniform(1.0, 2.0);
-    cut.model = make_centred_block({size, size, size}, size / squares);
+    mesh = make_centred_block({size, size, size}, size / squares);
     half = 0.5 * size;
     line = random.below(2) == 0 ? half : half - size / squares;
   } else if (shape == 1) {
-    cut.model = make_sphere(4 + static_cast<int>(random.below(5)));
+    mesh = make_sphere(4 + static_cast<int>(random.below(5)));
     half = 1;
   } else {
-    cut.model = make_torus(0.7, 0.3, 16, 8);
+    mesh = make_torus(0.7, 0.3, 16, 8);
     half = 0.7;
     line = 0.7;
   }
+  cut.models = {.all = mesh, .bodies = {mesh}};
   Scene& scene = cut.scene;
   scene.bodies.resize(1);
   scene.bodies[0].sampling.count = 120 + random.below(200);
@@ -116,7 +175,7 @@ CutScene random_cut_scene(std::uint64_t seed) {
   if (hangs) {
     scene.gravity = {0, 0, random.uniform(-4.0, -0.5)};
     double top = 0;
-    for (const Vec3& p : cut.model.vertices) top = std::max(top, p.z());
+    for (const Vec3& p : mesh.vertices) top = std::max(top, p.z());
     scene.grips.push_back({.lo = {-4, -4, 0.5 * top}, .hi = {4, 4, 4}});
   }
   const std::uint32_t kind = random.below(5), strokes = 1 + random.below(3);
@@ -140,25 +199,36 @@ CutScene random_cut_scene(std::uint64_t seed) {
 
 CutScene placed(const CutScene& cut, const Placement& way) {
   CutScene result = cut;
-  Box3 box;
-  for (const Vec3& p : cut.model.vertices) box.add(p);
-  const Vec3 offset = way.offset;
-  const auto place = [&](const Vec3& p) { return Vec3(way.of_vector(p) + offset); };
-  for (Vec3& p : result.model.vertices) p = place(p);
-  if (way.mirrors())
-    for (Triangle& t : result.model.triangles) std::swap(t[1], t[2]);
+  const Placer place(way);
+  place.mesh(result.models.all);
+  for (TriangleMesh& mesh : result.models.bodies) place.mesh(mesh);
   Scene& scene = result.scene;
-  scene.material.young *= way.scale * way.scale;
-  scene.gravity = way.of_vector(scene.gravity);
+  const double scale = way.scale;
+  place.material(scene.material);
+  for (SceneBody& body : scene.bodies) {
+    body.velocity = place.vector(body.velocity);
+    body.spin = place.axis(body.spin);
+    body.sampling.spacing *= scale;
+    if (body.material) place.material(*body.material);
+  }
+  for (Front& score : scene.scores)
+    for (auto& step : score.steps)
+      for (Vec3& p : step) p = place.point(p);
+  scene.gravity = place.vector(scene.gravity);
+  scene.ground_point = place.point(scene.ground_point);
+  scene.ground_normal = way.matrix() * scene.ground_normal;
   for (Grip& grip : scene.grips) {
-    const Vec3 a = place(grip.lo), b = place(grip.hi);
-    grip.lo = a.cwiseMin(b);
-    grip.hi = a.cwiseMax(b);
+    place.box(grip.lo, grip.hi);
+    for (Motion::Key& key : grip.motion.keys) place.key_about(key, Vec3::Zero());
   }
   for (Blade& blade : scene.blades) {
-    for (Vec3& p : blade.points) p = place(p);
-    for (Motion::Key& key : blade.motion.keys) key.position = way.of_vector(key.position);
+    for (Vec3& p : blade.points) p = place.vector(p);
+    blade.back = place.vector(blade.back);
+    blade.thickness *= scale;
+    for (Motion::Key& key : blade.motion.keys) place.key_about(key, way.offset);
   }
+  for (SceneObstacle& obstacle : scene.obstacles) place.obstacle(obstacle);
+  place.fracture(scene.fracture);
   result.about += ", " + way.name;
   return result;
 }

@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <string>
 
-#include "kerf/mesh.h"
 #include "kerf/scene.h"
+#include "kerf/simulation.h"
 
 namespace geo {
 
-/// A solid and the scene that cuts it. The scene's model is the mesh, without a pose of its own.
+/// A scene and its models.
 struct CutScene {
-  TriangleMesh model;
+  PlacedModels models;
   Scene scene;
   std::string about;  ///< what it is, for a failing test
 };
@@ -25,12 +25,10 @@ struct Placement {
   std::array<int, 3> axis = {0, 1, 2};
   std::array<double, 3> sign = {1, 1, 1};
   double scale = 1;
-  Vec3 offset = Vec3::Zero();  ///< in sizes of the model
+  Vec3 offset = Vec3::Zero();  ///< model units
 
-  /// Whether it turns right hands into left ones.
-  bool mirrors() const;
-  /// The image of a vector.
-  Vec3 of_vector(const Vec3& v) const;
+  /// The signed permutation.
+  Mat3 matrix() const;
 };
 
 /// As it is; translated by binary fractions; mirrored in each axis; with axes exchanged; twice and
@@ -42,8 +40,8 @@ std::array<Placement, 8> placements();
 /// less than doubles resolve. Seed decides all.
 CutScene random_cut_scene(std::uint64_t seed);
 
-/// The same scene, placed. Times stay: velocities and accelerations scale with lengths, and moduli
-/// with their square.
+/// The same scene, placed. Times stay: velocities and accelerations scale with lengths, moduli and
+/// strengths with their square, and toughness with its root besides.
 CutScene placed(const CutScene& cut, const Placement& way);
 
 }  // namespace geo

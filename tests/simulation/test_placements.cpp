@@ -28,7 +28,7 @@ struct Outcome {
 };
 
 Outcome run(const CutScene& cut) {
-  Simulation sim(cut.scene, cut.model);
+  Simulation sim(cut.scene, cut.models);
   Outcome outcome;
   FrameStats total;
   for (int f = 0; f < cut.scene.frames; ++f) {

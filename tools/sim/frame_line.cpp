@@ -66,7 +66,8 @@ std::string line_of(const FrameOutcome& o, std::size_t crossings) {
                      ",\"sheet_turning\":" + tool::number(o.stats.sheet.turning) +
                      ",\"retreating\":" + std::to_string(o.stats.sheet.retreating) +
                      ",\"crumbs\":" + std::to_string(o.stats.sheet.crumbs) +
-                     ",\"energy\":" + tool::number(o.stats.energy) + ",\"blade_force\":[";
+                     ",\"energy\":" + tool::number(o.stats.energy) + ",\"kinetic\":" + tool::number(o.stats.kinetic) +
+                     ",\"weight\":" + tool::number(o.stats.weight) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < o.stats.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.stats.blade_force[b]);
   line += "],\"obstacles\":[";
   for (std::size_t k = 0; k < o.stats.obstacle_force.size(); ++k)

@@ -3,6 +3,7 @@
 #include "sim/setup.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -88,6 +89,24 @@ void warn_of_coarse_models(const Setup& setup, const geo::Body& body, const tool
           tool::rounded(longest) + ", nodes are at most " + tool::rounded(coarsest) +
           " apart; a surface bends and touches at its vertices: kerf-repair --edge " + share + " gives it more");
   }
+}
+
+std::vector<std::string> thin_models(const Setup& setup, const geo::Body& body) {
+  // Ears and rims taper off in most models, and hardly matter for how these bend.
+  constexpr double least_share = 0.1;
+  std::vector<std::string> sentences;
+  for (std::size_t b = 0; b < setup.models.bodies.size(); ++b) {
+    const geo::ThinMaterial thin = geo::find_thin_material(setup.models.bodies[b], body.nodes);
+    if (thin.share < least_share) continue;
+    const double volume = geo::signed_volume(setup.models.bodies[b]);
+    sentences.push_back(fs::path(setup.scene.bodies[b].mesh).filename().string() + ": " +
+                        tool::rounded(std::round(100 * thin.share)) + " % of its surface has walls of about " +
+                        tool::rounded(thin.thickness) + ", as near (" + tool::rounded(thin.at) +
+                        "), with fewer than 2 nodes across at a spacing of " + tool::rounded(thin.spacing) +
+                        ": they bend too little; body.spacing = " + tool::rounded(thin.enough) + " is needed, about " +
+                        tool::rounded(volume / std::pow(thin.enough, 3)) + " nodes");
+  }
+  return sentences;
 }
 
 void warn_of_empty_grips(const Setup& setup, const geo::Body& body, const tool::Tool& t) {

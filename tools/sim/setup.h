@@ -29,6 +29,9 @@ void warn_of_large_models(const Setup& setup, const tool::Tool& t);
 /// Warns of models with triangles much larger than the node spacing, as CAD programs write them: a
 /// surface bends and touches at its vertices only.
 void warn_of_coarse_models(const Setup& setup, const geo::Body& body, const tool::Tool& t);
+/// A sentence for each model of which a tenth of the surface and more are walls with fewer than two
+/// nodes across: they bend too little. It names the spacing that is needed.
+std::vector<std::string> thin_models(const Setup& setup, const geo::Body& body);
 /// Warns of grips that hold no node.
 void warn_of_empty_grips(const Setup& setup, const geo::Body& body, const tool::Tool& t);
 /// Warns that no blade has met the material, and says when and where blades move.

@@ -83,6 +83,8 @@ struct FrameStats {
                                  ///< beside contact
   double contact_seconds = 0, write_seconds = 0;
   double energy = 0;                  ///< elastic, J, at the frame's end
+  double kinetic = 0;                 ///< kinetic energy, J, at the frame's end
+  double weight = 0;                  ///< energy of weight, J, at the frame's end; 0 where nothing has moved
   std::vector<Vec3> blade_force;      ///< per blade: exerted by the material, N, mean over the frame
   std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
   std::vector<Vec3> obstacle_force;   ///< per obstacle, then the ground: exerted by the bodies, N, mean

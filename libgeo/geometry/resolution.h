@@ -8,32 +8,35 @@
 
 namespace geo {
 
-/// Coordinates that are multiples of the ulp of a model's size. Coordinates as large as the model
-/// are such multiples anyway, so a model about the origin is treated as one beside it.
+/// Coordinates that are multiples of a power of two. With the ulp of a model's size, coordinates as
+/// large as the model are such multiples anyway, so a model about the origin is treated as one
+/// beside it.
 class Resolution {
  public:
-  /// For a model of a size, model units: the ulp of the power of two above. No resolution, which
-  /// rounds nothing, for a size that is zero or not finite.
-  explicit Resolution(double size) {
+  /// Of coordinates that come out of arithmetic on doubles: one ulp.
+  static constexpr int of_doubles = 52;
+
+  /// 2^−bits of the power of two above the size of a model, model units. No resolution, which rounds
+  /// nothing, for a size that is zero or not finite. Precondition: bits is at most 52.
+  explicit Resolution(double size, int bits = of_doubles) {
     if (!(size > 0) || !std::isfinite(size)) return;
     int exponent = 0;
     std::frexp(size, &exponent);
-    ulp_ = std::ldexp(1.0, exponent - mantissa_bits);
-    // At 1.5 · 2^e, one ulp of a double is 2^(e − 52): adding this number rounds to multiples of ulp_.
-    shift_ = 1.5 * std::ldexp(1.0, exponent);
-    whole_ = std::ldexp(0.25, exponent);
+    unit_ = std::ldexp(1.0, exponent - bits);
+    // Beside 1.5 · 2^52 units, doubles are one unit apart: adding this number rounds to whole units.
+    shift_ = 1.5 * std::ldexp(unit_, of_doubles);
+    whole_ = std::ldexp(unit_, of_doubles - 2);
   }
 
-  /// The nearest multiple of ulp(); a coordinate of a quarter of the size and more stays.
+  /// The nearest multiple of unit(); a coordinate of 2^50 units and more stays.
   double rounded(double x) const { return std::abs(x) < whole_ ? (x + shift_) - shift_ : x; }
   /// The same for each coordinate.
   Vec3 rounded(const Vec3& x) const { return {rounded(x[0]), rounded(x[1]), rounded(x[2])}; }
   /// The distance of neighbouring coordinates, model units; 0: none.
-  double ulp() const { return ulp_; }
+  double unit() const { return unit_; }
 
  private:
-  static constexpr int mantissa_bits = 52;  // of a double, without the leading one
-  double ulp_ = 0, shift_ = 0, whole_ = 0;
+  double unit_ = 0, shift_ = 0, whole_ = 0;
 };
 
 }  // namespace geo

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "geometry/distance.h"
+#include "geometry/resolution.h"
 #include "kerf/parallel.h"
 #include "kerf/pieces.h"
 #include "mechanics/solver/solid_discretisation.h"
@@ -30,6 +31,13 @@ Box3 box_about(const Blade& blade, const Pose& pose) {
   Box3 box;
   for (const Vec3& p : blade.points) box.add(pose * p);
   return box;
+}
+
+// Displacements as far as the body resolves them: the solver leaves noise in a body at rest.
+std::vector<Vec3> resolved(std::vector<Vec3> displacement, const Body& body) {
+  const Resolution resolution(body.surface.extent().diagonal());
+  for (Vec3& u : displacement) u = resolution.rounded(u);
+  return displacement;
 }
 
 // The time at a fraction of a step, s.
@@ -137,7 +145,7 @@ MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction)
 
 MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction, const Box3& box)
     : pose_(blade.motion.at(time_at(moved, fraction))),
-      displacement_(moved.way.at(moved.motion.displacement, fraction)),
+      displacement_(resolved(moved.way.at(moved.motion.displacement, fraction), moved.body)),
       gradient_(lazy_gradients(moved.solid.discretisation(), displacement_)),
       map_(moved.body, displacement_, gradient_, box) {}
 

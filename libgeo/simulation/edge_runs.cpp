@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/resolution.h"
 #include "kerf/parallel.h"
 #include "body/locate.h"
 #include "simulation/existing_cuts.h"
+#include "simulation/mapped_places.h"
 
 namespace geo {
 namespace {
@@ -47,7 +47,7 @@ class EdgeSampler {
         pose_(pose),
         fronts_(fronts),
         cuts_(body, fronts),
-        resolution_(body.surface.extent().diagonal()) {}
+        place_(body.surface) {}
 
   Sample at(double parameter) {
     Sample s;
@@ -55,7 +55,7 @@ class EdgeSampler {
     s.world = pose_ * place_on(blade_, parameter);
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
-    s.material = resolution_.rounded(place.position), s.within = place.in_support;
+    s.material = place_.resolved(place.position), s.within = place.in_support;
     s.node = place.nearest;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
@@ -91,7 +91,7 @@ class EdgeSampler {
   const Pose& pose_;
   std::span<const EdgeFront> fronts_;
   ExistingCuts cuts_;
-  Resolution resolution_;
+  MappedPlaces place_;
   InverseDeformation::VertexCache memory_;
 };
 
@@ -146,8 +146,9 @@ std::vector<std::pair<std::size_t, std::size_t>> stays_in_cut(const std::vector<
 
 // Takes samples in existing cuts out of the material, and beside them those in air outside the skin.
 // From there, the skin bulges into what the edge sweeps, and a strip would lie on the sheet of the
-// cut. An edge that crosses a cut is in it for less than a spacing, and stays whole. Otherwise a
-// part in whole material keeps one more sample, so that it ends at the sheet or in air.
+// cut. An edge that comes from whole material and is in a cut for less than a spacing crosses it, and
+// stays. Otherwise a part in whole material keeps one more sample, so that it ends at the sheet or in
+// air.
 class CutLeaver {
  public:
   CutLeaver(std::vector<Sample>& samples, const Complex& surface) : samples_(samples), surface_(surface) {}
@@ -159,7 +160,7 @@ class CutLeaver {
       const bool whole_before = first > 0 && is_whole(first - 1);
       const bool whole_after = last + 1 < samples_.size() && is_whole(last + 1);
       const double length = (samples_[last].material - samples_[first].material).norm();
-      if (whole_before && whole_after && length < samples_[first].spacing) continue;
+      if ((whole_before || whole_after) && length < samples_[first].spacing) continue;
       for (std::size_t i = first; i <= last; ++i)
         samples_[i].within = (i == first && whole_before) || (i == last && whole_after);
       if (last == first + 1) is_end[last] = 1;

@@ -2,12 +2,14 @@
 #include "simulation/existing_cuts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "body/locate.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
-#include "geometry/resolution.h"
+#include "simulation/mapped_places.h"
 
 namespace geo {
 namespace {
@@ -16,6 +18,45 @@ namespace {
 // hold_retreating() has it.
 constexpr double any_reach = 0.05;
 constexpr double own_reach = 0.25;
+
+// The place of a sheet nearest to a point.
+struct SheetPlace {
+  Vec3 place, normal;
+  double distance = std::numeric_limits<double>::infinity();
+
+  // A point at a height over the sheet, `further` along it from p.
+  Vec3 over(double height, const Vec3& p, double further) const {
+    Vec3 along = place - p;
+    along -= normal.dot(along) * normal;
+    return place + height * normal + (along.isZero(0) ? Vec3(Vec3::Zero()) : Vec3(further * along.normalized()));
+  }
+  double height(const Vec3& p) const { return normal.dot(p - place); }
+};
+
+// Within `reach`; else at infinity.
+SheetPlace nearest_sheet(const Complex& surface, const Vec3& p, double reach) {
+  std::vector<FaceId> near;
+  surface.faces_near(Box3{p, p}.grown(reach), near);
+  SheetPlace nearest;
+  for (const FaceId f : near) {
+    if (surface.face(f).crack == 0) continue;
+    const auto [a, b, c] = surface.corners(f);
+    const Vec3 place = closest_point_on_triangle(p, a, b, c);
+    const double distance = (place - p).norm();
+    if (distance < std::min(reach, nearest.distance))
+      nearest = {.place = place, .normal = (b - a).cross(c - a).normalized(), .distance = distance};
+  }
+  return nearest;
+}
+
+// The marked index nearest to i; nothing where none is marked.
+std::optional<std::size_t> nearest_marked(const std::vector<std::uint8_t>& marked, std::size_t i) {
+  for (std::size_t d = 0; d < marked.size(); ++d) {
+    if (d <= i && marked[i - d]) return i - d;
+    if (i + d < marked.size() && marked[i + d]) return i + d;
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -40,7 +81,9 @@ double distance_from_front(const FrontState& front, const Vec3& point) {
 }
 
 bool has_contact(const FrontState& front) {
-  return std::any_of(front.points.begin(), front.points.end(), [](const auto& p) { return p.id.valid(); });
+  return std::any_of(front.segments.begin(), front.segments.end(), [](const auto& segment) {
+    return std::any_of(segment.begin(), segment.end(), [](const auto& p) { return p.id.valid(); });
+  });
 }
 
 ExistingCuts::ExistingCuts(const Body& body, std::span<const EdgeFront> fronts) : body_(body), fronts_(fronts) {
@@ -86,18 +129,54 @@ bool ExistingCuts::can_go_on(double at) const {
 std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
                                      std::span<const EdgePoint> run, std::span<const EdgeFront> fronts) {
   std::vector<EdgePoint> begin(run.begin(), run.end());
-  if (moved.body.surface.crack_count() == 0) return begin;
+  const Complex& surface = moved.body.surface;
+  if (surface.crack_count() == 0) return begin;
+  std::vector<std::uint8_t> is_whole;
+  for (const EdgePoint& p : run) is_whole.push_back(is_inside(surface, p.material));
+  // An edge that has left a cut for air cuts nothing.
+  if (std::count(is_whole.begin(), is_whole.end(), 1) == 0) return begin;
   const MapAt start(moved, blade, before);
   const ExistingCuts cuts(moved.body, fronts);
-  const Resolution resolution(moved.body.surface.extent().diagonal());
+  const MappedPlaces places(surface);
   InverseDeformation::VertexCache memory;
-  for (EdgePoint& p : begin) {
+  std::vector<std::uint8_t> is_in_air(begin.size(), 0), is_in_cut(begin.size(), 0);
+  std::vector<Vec3> rise(begin.size(), Vec3::Zero());  // of points in cuts, over the sheet
+  for (std::size_t i = 0; i < begin.size(); ++i) {
+    EdgePoint& p = begin[i];
     const auto place = start.map().to_material(start.pose() * place_on(blade, p.at), memory, &p.material);
     if (!place.in_support) continue;
-    if (cuts.contain(place.position, place.nearest) || !is_inside(moved.body.surface, place.position))
-      p.material = resolution.rounded(place.position);
+    is_in_air[i] = !is_inside(surface, place.position);
+    if (is_in_air[i]) p.material = place.position;
+    if (is_in_air[i] || !is_whole[i] || !cuts.contain(place.position, place.nearest)) continue;
+    const SheetPlace sheet = nearest_sheet(surface, place.position, own_reach * p.spacing);
+    const double height = any_reach * p.spacing;
+    is_in_cut[i] = std::isfinite(sheet.distance);
+    p.material = is_in_cut[i] ? sheet.over(height, p.material, 2 * height) : place.position;
+    rise[i] = height * sheet.normal;
+  }
+  for (std::size_t i = 0; i < begin.size(); ++i) {
+    // Beside the skin, the front is as high over the sheet in air as it is inside.
+    if (const auto k = nearest_marked(is_in_cut, i); k && is_in_air[i]) begin[i].material += rise[*k];
+    begin[i].material = places.resolved(begin[i].material);
   }
   return begin;
+}
+
+void cross_first(const Complex& surface, const FrontState& front, std::span<const double> spacing,
+                 std::vector<Vec3>& to) {
+  if (front.step > 0 || surface.crack_count() == 0) return;
+  std::vector<std::uint8_t> is_inner(to.size(), 0), begins_in_cut(to.size(), 0);
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Vec3& from = front.points[i].position;
+    is_inner[i] = is_inside(surface, from);
+    const SheetPlace sheet = nearest_sheet(surface, from, 1.5 * any_reach * spacing[i]);
+    begins_in_cut[i] = is_inner[i] && std::isfinite(sheet.distance);
+    if (begins_in_cut[i]) to[i] = from - 2 * sheet.height(from) * sheet.normal;
+  }
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const auto k = nearest_marked(begins_in_cut, i);
+    if (k && !is_inner[i]) to[i] = front.points[i].position + (to[*k] - front.points[*k].position);
+  }
 }
 
 }  // namespace geo

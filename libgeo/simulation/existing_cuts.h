@@ -19,7 +19,7 @@ double distance_from_crack(const Complex& surface, std::int32_t crack, const Vec
 /// The distance of a point from the polyline of a front, contacts included; model units.
 double distance_from_front(const FrontState& front, const Vec3& point);
 
-/// Whether a point of the front is on a vertex of K: it lies in the material and can go on.
+/// Whether the front touches K, with its points or between them: it can go on in the material.
 bool has_contact(const FrontState& front);
 
 /// The cracks of a body as a blade meets them. The walls of a cut lie on each other in the
@@ -47,10 +47,17 @@ class ExistingCuts {
   std::vector<std::int32_t> own_;  // numbers of this blade's cracks, ascending
 };
 
-/// Where the front of a run begins: each of its points that was in a cut, or outside the material, at
-/// the fraction `before` of the time step begins there, so that nothing is left between the cuts.
-/// The others begin where they are. `fronts`: of the blade.
+/// Where the front of a run begins. A point that has come from a cut, or from air, since the fraction
+/// `before` of the time step begins there; in a cut, a twentieth of a node spacing over its sheet. The
+/// others begin where they are. `fronts`: of the blade.
 std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
-                                     std::span<const EdgePoint> run, std::span<const EdgeFront> fronts);
+                                    std::span<const EdgePoint> run, std::span<const EdgeFront> fronts);
+
+/// Makes the first step of a front that begins in a cut cross the sheet, behind its border. So the
+/// next step, which passes the border on the other side, leaves no bridge: sheets that only touch,
+/// but for rounding, need not meet. Changes `to` where the front begins in a cut. `spacing`: of the
+/// nodes at each point, model units.
+void cross_first(const Complex& surface, const FrontState& front, std::span<const double> spacing,
+                 std::vector<Vec3>& to);
 
 }  // namespace geo

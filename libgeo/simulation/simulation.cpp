@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "contact/response/blade_penalty.h"
-#include "geometry/resolution.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
@@ -25,6 +24,7 @@
 #include "simulation/fracture_step.h"
 #include "simulation/front_anchor.h"
 #include "simulation/grips.h"
+#include "simulation/mapped_places.h"
 #include "simulation/obstacles.h"
 #include "simulation/pulls.h"
 #include "simulation/scene_body.h"
@@ -409,15 +409,18 @@ Simulation::Impl::Advance Simulation::Impl::advance_of(const EdgeFront& front, s
                                                        const MapAt& half, const Blade& blade,
                                                        const FrontAnchor& anchor) const {
   Advance a;
-  const Resolution resolution(body.surface.extent().diagonal());
+  const MappedPlaces places(body.surface);
   std::vector<Vec3> mapped;
   a.edge = refined(front, run, mapped);
   for (const double at : a.edge.at) {
     const EdgePoint& p = nearest(run, at);
-    a.to.push_back(resolution.rounded(anchor.corrected(p.at, p.material, p.spacing)));
+    a.to.push_back(anchor.corrected(p.at, p.material, p.spacing));
     a.spacing.push_back(p.spacing);
   }
   a.retreating = hold_retreating(body.surface, a.edge.front, a.spacing, a.to);
+  cross_first(body.surface, a.edge.front, a.spacing, a.to);
+  for (std::size_t i = 0; i < a.to.size(); ++i)
+    if (a.to[i] != a.edge.front.points[i].position) a.to[i] = places.resolved(a.to[i]);
   a.rests = rests(a.edge.front, mapped, a.spacing, a.to);
   if (!a.rests) a.deviation = sheet_deviation(body, half, blade, a.edge, a.to, anchor);
   return a;

@@ -20,6 +20,8 @@ using namespace geo;
 namespace {
 
 // What does not depend on the place of a scene, lengths in units of its scale.
+constexpr double least_energy = 1e-6;  // over modulus and volume: a strain of a thousandth
+
 struct Outcome {
   std::vector<double> volumes;  // of pieces, descending, over that of all
   std::size_t crumbs = 0, crossings = 0, refused = 0;
@@ -50,19 +52,23 @@ Outcome run(const CutScene& cut) {
   return outcome;
 }
 
-// Whether two lists of volumes are of the same pieces. The nodes of a mirrored model are elsewhere,
-// so it is deformed otherwise while it is cut: by less than a hundredth of its size. Pieces that
-// are smaller than that in each direction may be in one list alone, but no specks of rounding.
+// Whether two lists of volumes are of the same pieces. Nodes of a mirrored model are elsewhere, and
+// the model hangs otherwise while it is cut, by less than a fiftieth of its size. Pieces that are
+// smaller than a twentieth of it in each direction may be in one list alone.
 bool are_same_pieces(const std::vector<double>& a, const std::vector<double>& b) {
   constexpr double same = 0.02;
-  constexpr double small = 1e-5;
-  constexpr double speck = 1e-9;
+  constexpr double small = 1e-4;
   for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
     const double va = i < a.size() ? a[i] : 0, vb = i < b.size() ? b[i] : 0;
-    const double least = std::min(va, vb), most = std::max(va, vb);
-    if (most - least > same || (least == 0 && most > small) || (least < speck && most > 3 * least)) return false;
+    if (std::abs(va - vb) > same || (std::max(va, vb) > small && std::min(va, vb) == 0)) return false;
   }
   return true;
+}
+
+// Specks: pieces that only rounding can make where nothing is deformed.
+std::size_t specks(const Outcome& o) {
+  constexpr double largest = 1e-9;
+  return static_cast<std::size_t>(std::count_if(o.volumes.begin(), o.volumes.end(), [](double v) { return v < largest; }));
 }
 
 std::string told(const Outcome& o) {
@@ -96,7 +102,13 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
     CHECK(here.crossings == 0);
     CHECK(there.crossings == 0);
     CHECK(are_same_pieces(here.volumes, there.volumes));
-    CHECK(there.energy == Approx(here.energy).epsilon(0.5).margin(1e-9));
+    const bool at_rest = cut.scene.gravity.isZero(0);
+    if (at_rest) {
+      CHECK(specks(here) == 0);
+      CHECK(specks(there) == 0);
+    }
+    CHECK(there.energy < 2 * here.energy + least_energy);
+    CHECK(here.energy < 2 * there.energy + least_energy);
     CHECK(double(there.work) < 2 * double(here.work));
     CHECK(double(here.work) < 2 * double(there.work));
   }

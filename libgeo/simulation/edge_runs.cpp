@@ -30,6 +30,7 @@ struct Sample {
   Vec3 world, material;
   bool within = false;     // the support of a node
   bool is_in_cut = false;  // one that exists, and no front there can go on
+  bool is_held = false;    // by a front that can go on
   NodeId node;             // the nearest one in the world
   double spacing = 0;
   double gap = std::numeric_limits<double>::infinity();  // distance to the nearest node, less its support radius
@@ -62,7 +63,8 @@ class EdgeSampler {
       s.gap =
           (s.material - body_.nodes.position[place.nearest.index()]).norm() - body_.nodes.radius[place.nearest.index()];
     }
-    s.is_in_cut = s.within && !cuts_.can_go_on(parameter) && cuts_.contain(s.material, s.node);
+    s.is_held = s.within && cuts_.can_go_on(parameter);
+    s.is_in_cut = s.within && !s.is_held && cuts_.contain(s.material, s.node);
     return s;
   }
 
@@ -175,11 +177,12 @@ class CutLeaver {
     return samples_[i].within && !samples_[i].is_in_cut && is_inside(surface_, samples_[i].material);
   }
 
-  // Takes out the samples in air beside sample `from`, up to the last one before whole material.
+  // Takes out the samples in air beside sample `from`, up to the last one before whole material, or
+  // to a front that can go on.
   void leave_air(std::size_t from, std::ptrdiff_t way) {
     const auto next = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + way); };
     for (std::size_t i = next(from); i < samples_.size() && samples_[i].within && !samples_[i].is_in_cut; i = next(i)) {
-      if (next(i) < samples_.size() && is_whole(next(i))) return;
+      if (samples_[i].is_held || (next(i) < samples_.size() && is_whole(next(i)))) return;
       samples_[i].within = false;
     }
   }

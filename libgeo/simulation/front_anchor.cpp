@@ -11,9 +11,14 @@ namespace {
 
 constexpr double reach = 2;  // spacings, of a correction; measured in docs/decisions/086
 
+// Faces lower than this, in sizes of the model, have no normal: places of blades are rounded to 2⁻³³
+// of the size (mapped_places.h), which turns a face that is a thousand times as high by a thousandth.
+constexpr double lowest_face = 0x1p-23;
+
 // Per front point: the sum of the normals of the sheet's faces beside it, each as long as twice its
 // area; zero where it has none.
 std::vector<Vec3> sheet_normals(const Complex& surface, const FrontState& front) {
+  const double lowest = lowest_face * surface.extent().diagonal();
   std::vector<Vec3> normals(front.points.size(), Vec3::Zero());
   for (std::size_t s = 0; s < front.segments.size(); ++s) {
     const auto& segment = front.segments[s];
@@ -24,6 +29,8 @@ std::vector<Vec3> sheet_normals(const Complex& surface, const FrontState& front)
         if (surface.face(f).crack != front.crack) continue;
         const auto t = surface.corners(f);
         const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
+        const double longest = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
+        if (n.norm() < lowest * longest) continue;
         for (const std::size_t i : {s, (s + 1) % normals.size()}) normals[i] += n.dot(normals[i]) < 0 ? Vec3(-n) : n;
       }
     }

@@ -28,6 +28,7 @@ FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name) 
   if (bytes.rfind("ply", 0) != 0) throw InputError(name + ": is no PLY file, which a run's nodes are in");
   FrameNodes frame{parse_nodes(bytes, name), {}};
   const Ply ply = parse_ply(bytes, name);
+  require_no_rest(ply, name);
   const PlyProperty* stress = ply.find("vertex")->find("stress");
   if (!stress || stress->count_type) throw InputError(name + ": has no field 'stress'; kerf-sim writes it");
   for (const double s : stress->values)

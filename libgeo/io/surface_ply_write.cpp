@@ -1,6 +1,7 @@
 // write_ply() of kerf/files.h. Writes a surface as binary little-endian PLY, with all that
 // reading it back bit by bit needs.
 #include <cfloat>
+#include <charconv>
 #include <cmath>
 #include <span>
 
@@ -8,6 +9,12 @@
 
 namespace geo {
 namespace {
+
+// A number in the shortest form that is read back exactly.
+std::string shortest(double x) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, x).ptr};
+}
 
 template <class T>
 void put(std::string& row, T value) {
@@ -96,6 +103,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
   for (const auto& f : fronts) out << "comment kerf_front " << f.name << '\n';
   for (const auto& name : a.group_names) out << "comment kerf_group " << name << '\n';
   if (!a.materials.empty()) out << "comment kerf_materials " << a.materials << '\n';
+  if (mesh.unit > 0) out << "comment kerf_unit " << shortest(mesh.unit) << '\n';
   out << "element vertex " << mesh.vertices.size() << "\nproperty double x\nproperty double y\nproperty double z\n";
   if (mesh.two_sided()) out << "property uint site\n";
   for (const auto& [names, block] : vertex_blocks)
@@ -110,6 +118,8 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
         << "\nproperty int crack\nproperty uint step\nproperty uchar closed\nelement kerf_contact " << contacts
         << "\nproperty uint front\nproperty uint segment\nproperty int site\nproperty double x\nproperty double "
            "y\nproperty double z\n";
+  const std::string* library = a.group.empty() ? nullptr : a.library.glb.get();
+  if (library) out << "element kerf_library 1\nproperty list uint uchar glb\n";
   out << "end_header\n";
   std::string row;
   const auto flush = [&](bool last) {
@@ -142,6 +152,10 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
         put(row, i), put(row, s), put<std::int32_t>(row, p.id.valid() ? static_cast<std::int32_t>(p.id.value) : -1);
         for (int c = 0; c < 3; ++c) put(row, p.position[c]);
       }
+  if (library) {
+    put(row, static_cast<std::uint32_t>(library->size()));
+    row += *library;
+  }
   flush(true);
 }
 

@@ -121,6 +121,8 @@ void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived) {
   Attributes to;
   to.group_names = from.group_names;
   to.materials = from.materials;
+  to.library = from.library;
+  derived.unit = original.unit;
   if (!from.uv.empty()) to.uv.resize(count);
   if (!from.normal.empty()) to.normal.resize(count);
   if (!from.color.empty()) to.color.resize(count);

@@ -1,0 +1,28 @@
+// Materials and images of a glTF file that travel with a surface, as a .glb of their own without nodes and meshes.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "io/gltf_document.h"
+#include "io/glb_file.h"
+
+namespace geo {
+
+/// A material of a document, and the group of the surface that has it.
+struct GltfGroup {
+  std::size_t material = 0;
+  std::string name;
+};
+
+/// A .glb with these materials, named as their groups, and the textures, samplers and images that
+/// they use. Images are copied byte by byte. Throws InputError where one cannot be read.
+std::string materials_of(GltfDocument& document, const std::vector<GltfGroup>& groups);
+
+/// Adds the materials, textures, samplers and images of such a .glb to a file. Returns the names of
+/// the materials, which stand in the file's list in this order. Throws InputError where the bytes
+/// are no such .glb.
+std::vector<std::string> add_materials(GlbFile& file, const std::string& materials);
+
+}  // namespace geo

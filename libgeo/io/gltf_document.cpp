@@ -159,12 +159,10 @@ std::string unescaped(const std::string& uri) {
 
 }  // namespace
 
-GltfDocument::GltfDocument(const std::string& bytes, const std::string& name)
-    : name_(name), file_size_(bytes.size()) {
+GltfDocument::GltfDocument(const std::string& bytes, const std::string& name) : name_(name), file_size_(bytes.size()) {
   read_container(bytes);
   const std::string version = text(member(json_, "asset"), "version");
-  if (!version.starts_with("2."))
-    fail("is a glTF file of version '" + shown(version) + "'; save it as glTF 2.0");
+  if (!version.starts_with("2.")) fail("is a glTF file of version '" + shown(version) + "'; save it as glTF 2.0");
   check_extensions();
 }
 
@@ -218,8 +216,8 @@ void GltfDocument::check_extensions() {
   };
   for (const std::string& extension : names("extensionsRequired")) {
     if (is_known(extension)) continue;
-    const std::string compressed =
-        is_in(compressions, extension) ? "which compresses it and is not read here; save it without compression"
+    const std::string compressed = is_in(compressions, extension)
+                                       ? "which compresses it and is not read here; save it without compression"
                                        : "which is not read here; save it without that extension";
     fail("requires the glTF extension " + shown(extension) + ", " + compressed);
   }

@@ -13,9 +13,11 @@ namespace geo {
 namespace {
 
 using Json = GlbFile::Json;
+using namespace nlohmann::literals;
 
 // Calls `change` for each object of a description, at any depth, with the key that it has.
-void for_each_object(Json& value, const std::string& key, const std::function<void(Json&, const std::string&)>& change) {
+void for_each_object(Json& value, const std::string& key,
+                     const std::function<void(Json&, const std::string&)>& change) {
   if (value.is_object()) change(value, key);
   if (value.is_structured())
     for (auto& [inner, entry] : value.items()) for_each_object(entry, inner, change);
@@ -75,15 +77,19 @@ class Copier {
     images_before_ = list("images").size();
   }
 
-  void add_material(std::size_t material, const std::string& name) {
+  void add_material(std::size_t material, const std::string& name, std::size_t uv_sets) {
     Json description = from_.entry("materials", material);
     description["name"] = name;
+    for_each_object(description, "", [&](Json& object, const std::string&) { drop_textures(object, uv_sets); });
     for_each_object(description, "", [&](Json& object, const std::string& key) {
       if (names_texture(key) && object.contains("index"))
         object["index"] = textures_before_ + textures_.of(index_in(from_, object["index"], "textures"));
     });
     list("materials").push_back(std::move(description));
   }
+
+  /// Uses of textures that were left out.
+  std::size_t dropped() const { return dropped_; }
 
   // Writes what the materials name.
   void finish() {
@@ -101,6 +107,20 @@ class Copier {
     Json& entries = to_.json[name];
     if (entries.is_null()) entries = Json::array();
     return entries;
+  }
+
+  // Removes uses of textures, among the members of an object, whose texture coordinates are not there.
+  void drop_textures(Json& object, std::size_t uv_sets) {
+    std::vector<std::string> gone;
+    for (const auto& [key, use] : object.items()) {
+      if (!names_texture(key) || !use.is_object() || !use.contains("index")) continue;
+      Json set = use.value("texCoord", Json(0));
+      if (use.contains("/extensions/KHR_texture_transform/texCoord"_json_pointer))
+        set = use["extensions"]["KHR_texture_transform"]["texCoord"];
+      if (!set.is_number_unsigned() || set.get<std::size_t>() >= uv_sets) gone.push_back(key);
+    }
+    for (const std::string& key : gone) object.erase(key);
+    dropped_ += gone.size();
   }
 
   void add_texture(std::size_t texture) {
@@ -122,7 +142,8 @@ class Copier {
         view ? std::string(from_.view(*view)) : from_.at_uri(GltfDocument::text(description, "uri"));
     std::string type = media_type(bytes);
     if (type.empty()) type = GltfDocument::text(description, "mimeType");
-    if (type.empty()) from_.fail("has image " + std::to_string(image) + " of an unknown format; save it as PNG or JPEG");
+    if (type.empty())
+      from_.fail("has image " + std::to_string(image) + " of an unknown format; save it as PNG or JPEG");
     Json written = {{"bufferView", to_.bytes(bytes)}, {"mimeType", type}};
     const std::string name = GltfDocument::text(description, "name");
     if (!name.empty()) written["name"] = name;
@@ -147,21 +168,21 @@ class Copier {
 
   GltfDocument& from_;
   GlbFile& to_;
-  std::size_t textures_before_, samplers_before_, images_before_;
+  std::size_t textures_before_, samplers_before_, images_before_, dropped_ = 0;
   Numbers textures_, samplers_, images_;
 };
 
 }  // namespace
 
-std::string materials_of(GltfDocument& document, const std::vector<GltfGroup>& groups) {
+GltfLibrary materials_of(GltfDocument& document, const std::vector<GltfGroup>& groups, std::size_t uv_sets) {
   GlbFile library;
   library.json = {{"asset", {{"version", "2.0"}, {"generator", "kerf"}}}};
   Copier copier(document, library);
-  for (const GltfGroup& group : groups) copier.add_material(group.material, group.name);
+  for (const GltfGroup& group : groups) copier.add_material(group.material, group.name, uv_sets);
   copier.finish();
   std::ostringstream out;
   library.write(out);
-  return std::move(out).str();
+  return {std::move(out).str(), copier.dropped()};
 }
 
 std::vector<std::string> add_materials(GlbFile& file, const std::string& materials) {
@@ -170,7 +191,7 @@ std::vector<std::string> add_materials(GlbFile& file, const std::string& materia
   std::vector<std::string> names;
   for (std::size_t i = 0; i < library.count("materials"); ++i) {
     names.push_back(GltfDocument::text(library.entry("materials", i), "name"));
-    copier.add_material(i, names.back());
+    copier.add_material(i, names.back(), ~std::size_t(0));
   }
   copier.finish();
   return names;

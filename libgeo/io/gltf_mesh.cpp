@@ -38,7 +38,8 @@ class PrimitiveReader {
     if (const GltfRows* normals = rows("NORMAL", 3, 3))
       for (std::size_t v = 0; v < vertices_; ++v) out_.normal.push_back(vector_at(*normals, v));
     move(morph);
-    read_uv();
+    read_uv("TEXCOORD_0", out_.uv);
+    read_uv("TEXCOORD_1", out_.uv2);
     read_color();
     read_joints();
     read_triangles();
@@ -53,7 +54,8 @@ class PrimitiveReader {
     std::vector<std::size_t> accessors;
     if (const auto at = document_.index(primitive_, "indices")) accessors.push_back(*at);
     if (attributes_.is_object())
-      for (const auto& entry : attributes_.items()) accessors.push_back(document_.size(attributes_, entry.key().c_str(), 0));
+      for (const auto& entry : attributes_.items())
+        accessors.push_back(document_.size(attributes_, entry.key().c_str(), 0));
     for (const std::size_t at : accessors)
       if (!document_.index(document_.entry("accessors", at), "bufferView"))
         document_.fail(
@@ -90,12 +92,12 @@ class PrimitiveReader {
     for (std::size_t v = 0; v < vertices_; ++v) to[v] += weight * vector_at(change, v);
   }
 
-  void read_uv() {
-    const GltfRows* uv = rows("TEXCOORD_0", 2, 2);
+  void read_uv(const char* name, std::vector<Vec2>& to) {
+    const GltfRows* uv = rows(name, 2, 2);
     if (!uv) return;
     for (std::size_t v = 0; v < vertices_; ++v) {
       const Vec2 at(uv->row(v)[0], 1 - uv->row(v)[1]);  // v points downwards in glTF
-      out_.uv.push_back(at.allFinite() ? at : Vec2(Vec2::Zero()));
+      to.push_back(at.allFinite() ? at : Vec2(Vec2::Zero()));
     }
   }
 
@@ -179,6 +181,7 @@ class PrimitiveReader {
     filter(out_.position, 1);
     filter(out_.normal, 1);
     filter(out_.uv, 1);
+    filter(out_.uv2, 1);
     filter(out_.color, 1);
     filter(out_.joint, out_.joint_count);
     filter(out_.weight, out_.joint_count);

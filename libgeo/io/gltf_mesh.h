@@ -14,7 +14,7 @@ namespace geo {
 /// none.
 struct GltfPrimitive {
   std::vector<Vec3> position, normal;
-  std::vector<Vec2> uv;       ///< v from the bottom
+  std::vector<Vec2> uv, uv2;  ///< the first two sets; v from the bottom
   std::vector<Color> color;   ///< sRGB
   std::vector<Triangle> triangles;
   /// For each vertex the joints of its skin with their weights, `joint_count` a vertex.

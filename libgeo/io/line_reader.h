@@ -24,7 +24,9 @@ class LineReader {
         name_(std::move(name)),
         comment_(comment),
         continuation_(continuation),
-        end_(end != 0 ? end : text.find('\n') == std::string_view::npos ? '\r' : '\n') {}
+        end_(end != 0                                    ? end
+             : text.find('\n') == std::string_view::npos ? '\r'
+                                                         : '\n') {}
 
   /// Splits the next line that is not empty into words; false at the end.
   bool next(std::vector<std::string_view>& words) {

@@ -1,5 +1,5 @@
-// io/model_unit.h; length_unit() of kerf/files.h. Attributes of XML are found as text: a whole parser would add nothing, as the elements that state a
-// unit stand once, near the beginning.
+// io/model_unit.h; length_unit() of kerf/files.h. Attributes of XML are found as text: a whole parser would add
+// nothing, as the elements that state a unit stand once, near the beginning.
 #include "io/model_unit.h"
 
 #include <zlib.h>
@@ -62,7 +62,8 @@ std::string beginning_of_entry(const std::string& bytes, std::string_view ending
   if (bytes.size() < end_size) return {};
   const auto end = bytes.rfind("PK\5\6");
   if (end == bytes.npos) return {};
-  for (std::size_t at = little(bytes, end + 16, 4); at + entry_size <= bytes.size() && bytes.compare(at, 4, "PK\1\2") == 0;) {
+  for (std::size_t at = little(bytes, end + 16, 4);
+       at + entry_size <= bytes.size() && bytes.compare(at, 4, "PK\1\2") == 0;) {
     const std::size_t name_size = little(bytes, at + 28, 2);
     const std::string_view name = std::string_view(bytes).substr(at + entry_size, name_size);
     const std::size_t method = little(bytes, at + 10, 2), local = little(bytes, at + 42, 4);

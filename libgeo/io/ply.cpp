@@ -15,17 +15,20 @@ namespace {
 
 char type_of(std::string_view word) {
   static constexpr std::pair<std::string_view, char> types[] = {
-      {"char", 'c'},   {"int8", 'c'},    {"uchar", 'C'},  {"uint8", 'C'},  {"short", 's'}, {"int16", 's'},
-      {"ushort", 'S'}, {"uint16", 'S'},  {"int", 'i'},    {"int32", 'i'},  {"uint", 'I'},  {"uint32", 'I'},
-      {"float", 'f'},  {"float32", 'f'}, {"double", 'd'}, {"float64", 'd'}, {"long", 'l'},  {"int64", 'l'},
-      {"ulong", 'L'},  {"uint64", 'L'}};
+      {"char", 'c'},    {"int8", 'c'},   {"uchar", 'C'},  {"uint8", 'C'},   {"short", 's'},
+      {"int16", 's'},   {"ushort", 'S'}, {"uint16", 'S'}, {"int", 'i'},     {"int32", 'i'},
+      {"uint", 'I'},    {"uint32", 'I'}, {"float", 'f'},  {"float32", 'f'}, {"double", 'd'},
+      {"float64", 'd'}, {"long", 'l'},   {"int64", 'l'},  {"ulong", 'L'},   {"uint64", 'L'}};
   for (const auto& [name, type] : types)
     if (name == word) return type;
   return 0;
 }
 
 std::size_t size_of(char type) {
-  return type == 'd' || type == 'l' || type == 'L' ? 8 : type == 'c' || type == 'C' ? 1 : type == 's' || type == 'S' ? 2 : 4;
+  return type == 'd' || type == 'l' || type == 'L' ? 8
+         : type == 'c' || type == 'C'              ? 1
+         : type == 's' || type == 'S'              ? 2
+                                                   : 4;
 }
 
 template <class T>

@@ -64,9 +64,11 @@ class GltfReader {
     for (const auto& entry : attributes.items()) {
       const std::string& key = entry.key();
       uv_ = uv_ || key == "TEXCOORD_0";
+      uv2_ = uv2_ || key == "TEXCOORD_1";
       normal_ = normal_ || key == "NORMAL";
       color_ = color_ || key == "COLOR_0";
-      if ((key.starts_with("TEXCOORD_") && key != "TEXCOORD_0") || (key.starts_with("COLOR_") && key != "COLOR_0") ||
+      const bool first_uv = key == "TEXCOORD_0" || key == "TEXCOORD_1";
+      if ((key.starts_with("TEXCOORD_") && !first_uv) || (key.starts_with("COLOR_") && key != "COLOR_0") ||
           key.starts_with("_"))
         others_.insert(shown(key, 40));
     }
@@ -109,8 +111,8 @@ class GltfReader {
       if (visit.depth > nodes) document_.fail("has a node that is below itself");
       if (places_.size() > most_visits) document_.fail("places more than a million nodes");
       const Eigen::Affine3d place = visit.outer * transform_of(document_, node);
-      const bool hidden =
-          visit.hidden || GltfDocument::member(GltfDocument::extension(node, "KHR_node_visibility"), "visible") == false;
+      const bool hidden = visit.hidden || GltfDocument::member(GltfDocument::extension(node, "KHR_node_visibility"),
+                                                               "visible") == false;
       first_place_.try_emplace(visit.node, place);
       places_.push_back({visit.node, place, hidden});
       const auto children = document_.indices(node, "children");
@@ -154,7 +156,8 @@ class GltfReader {
 
   std::vector<double> morph_weights(const Description& node, std::size_t mesh_index) {
     const Description& own = GltfDocument::member(node, "weights");
-    const Description& given = own.is_null() ? GltfDocument::member(document_.entry("meshes", mesh_index), "weights") : own;
+    const Description& given =
+        own.is_null() ? GltfDocument::member(document_.entry("meshes", mesh_index), "weights") : own;
     std::vector<double> weights;
     if (given.is_array())
       for (const Description& w : given) weights.push_back(w.is_number() ? w.get<double>() : 0.0);
@@ -256,16 +259,18 @@ class GltfReader {
       const Triangle placed{first + t[0], first + t[1], first + t[2]};
       mesh().triangles.push_back(placed);
       a.group.push_back(group);
-      std::array<Vec2, 3> uv;
+      std::array<Vec2, 3> uv, uv2;
       std::array<Vec3, 3> normals;
       std::array<Color, 3> color;
       for (std::size_t k = 0; k < 3; ++k) {
         uv[k] = part.uv.empty() ? Vec2(Vec2::Zero()) : part.uv[t[k]];
+        uv2[k] = part.uv2.empty() ? Vec2(Vec2::Zero()) : part.uv2[t[k]];
         color[k] = part.color.empty() ? Color(Color::Ones()) : part.color[t[k]];
         normals[k] = normal.empty() ? Vec3(Vec3::Zero()) : Vec3(normal[t[k]].stableNormalized());
         if (!normals[k].allFinite() || normals[k].isZero()) normals[k] = face_normal(at[t[0]], at[t[1]], at[t[2]]);
       }
       if (uv_) a.uv.push_back(uv);
+      if (uv2_) a.uv2.push_back(uv2);
       if (normal_) a.normal.push_back(normals);
       if (color_) a.color.push_back(color);
     }
@@ -278,7 +283,10 @@ class GltfReader {
       a.group_names.clear();
       return;
     }
-    a.library.glb = std::make_shared<const std::string>(materials_of(document_, materials_));
+    const std::size_t sets = uv2_ ? 2 : uv_ ? 1 : 0;
+    auto library = materials_of(document_, materials_, sets);
+    if (library.dropped > 0) left_out_.push_back(counted(library.dropped, "texture") + " without texture coordinates");
+    a.library.glb = std::make_shared<const std::string>(std::move(library.glb));
   }
 
   void add_notes() {
@@ -288,7 +296,8 @@ class GltfReader {
     add(points_, "mesh of points"), add(lines_, "mesh of lines");
     add(hulls_, "collision shape"), add(hidden_, "hidden mesh");
     add(document_.count("cameras"), "camera");
-    const Description& lights = GltfDocument::member(GltfDocument::extension(document_.json(), "KHR_lights_punctual"), "lights");
+    const Description& lights =
+        GltfDocument::member(GltfDocument::extension(document_.json(), "KHR_lights_punctual"), "lights");
     add(lights.is_array() ? lights.size() : 0, "light");
     add(document_.count("animations"), "animation");
     for (const std::string& name : others_) left_out_.push_back("attribute " + name);
@@ -300,8 +309,8 @@ class GltfReader {
 
   GltfDocument document_;
   const std::size_t most_triangles_;  // of nodes and instances; a triangle that is stored has a byte at least
-  bool uv_ = false, normal_ = false, color_ = false;  // whether some mesh has them
-  std::set<std::string> others_;                      // attributes that are left out
+  bool uv_ = false, uv2_ = false, normal_ = false, color_ = false;  // whether some mesh has them
+  std::set<std::string> others_;                                    // attributes that are left out
   std::vector<Placed> places_;
   std::map<std::size_t, Eigen::Affine3d> first_place_;  // of nodes
   std::map<std::size_t, std::vector<Eigen::Matrix4d>> skins_;

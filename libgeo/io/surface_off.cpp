@@ -49,7 +49,8 @@ class OffReader {
   void read_counts() {
     if (!lines_.next(words_)) lines_.fail("is empty");
     if (read_keyword(words_[0], layout_)) words_.erase(words_.begin());  // the keyword is optional
-    if (!words_.empty() && words_[0] == "BINARY") lines_.fail("is a binary OFF file, which is not read; save it as text");
+    if (!words_.empty() && words_[0] == "BINARY")
+      lines_.fail("is a binary OFF file, which is not read; save it as text");
     if (words_.empty() && !lines_.next(words_)) lines_.fail("ends before its counts");
     if (words_.size() < 2) lines_.fail("the counts of vertices and faces are missing");
     vertices_ = lines_.integer(words_[0]);
@@ -110,7 +111,8 @@ class OffReader {
         lines_.fail("ends after " + std::to_string(i) + " of " + std::to_string(faces_) +
                     " faces; the file is truncated");
       const auto n = lines_.integer(words_[0]);
-      if (n < 0 || static_cast<std::size_t>(n) + 1 > words_.size()) lines_.fail("a face has fewer vertices than it says");
+      if (n < 0 || static_cast<std::size_t>(n) + 1 > words_.size())
+        lines_.fail("a face has fewer vertices than it says");
       polygon.clear();
       for (long long k = 1; k <= n; ++k)
         polygon.push_back(row_of(static_cast<double>(lines_.integer(words_[static_cast<std::size_t>(k)]))));

@@ -93,7 +93,8 @@ class Reader {
       if (!faces) throw InputError(name_ + ": its faces have no vertex_indices");
       to.values = faces->values;
       to.ends = faces->ends;
-      if (face_->properties.size() > 1) add_left_out(file_.notes, {"properties of faces, as triangle strips have none"});
+      if (face_->properties.size() > 1)
+        add_left_out(file_.notes, {"properties of faces, as triangle strips have none"});
     }
     for (std::size_t s = 0; s < strips.count; ++s) {
       std::size_t first = s > 0 ? from->ends[s - 1] : 0;
@@ -120,12 +121,12 @@ class Reader {
   void rest() {
     static constexpr std::string_view elements[] = {"vertex",     "face",         "tristrips",
                                                     "kerf_front", "kerf_contact", "kerf_library"};
-    static constexpr std::string_view at_vertices[] = {"x",         "y",         "z",   "nx",    "ny",   "nz",
-                                                       "red",       "green",     "blue", "alpha", "s",    "t",
-                                                       "u",         "v",         "texture_u", "texture_v", "site"};
-    static constexpr std::string_view at_faces[] = {"vertex_indices", "vertex_index", "patch", "source", "group",
-                                                    "texcoord",       "normal",       "color", "red",    "green",
-                                                    "blue",           "alpha"};
+    static constexpr std::string_view at_vertices[] = {"x",   "y",     "z",         "nx",        "ny",  "nz",
+                                                       "red", "green", "blue",      "alpha",     "s",   "t",
+                                                       "u",   "v",     "texture_u", "texture_v", "site"};
+    static constexpr std::string_view at_faces[] = {"vertex_indices", "vertex_index", "patch",  "source", "group",
+                                                    "texcoord",       "texcoord2",    "normal", "color",  "red",
+                                                    "green",          "blue",         "alpha"};
     const auto known = [](const auto& names, std::string_view name) {
       return std::find(std::begin(names), std::end(names), name) != std::end(names);
     };
@@ -243,6 +244,7 @@ class Reader {
     if (uv.empty()) uv = scalars(*vertex_, {"texture_u", "texture_v"});
     const auto at_vertex = colors_of(*vertex_);
     fill<Vec2>(a.uv, "texcoord", {}, rows_of<Vec2>(uv, vertex_->count), [](std::size_t) { return Vec2(Vec2::Zero()); });
+    fill<Vec2>(a.uv2, "texcoord2", {}, {}, [](std::size_t) { return Vec2(Vec2::Zero()); });
     fill<Vec3>(a.normal, "normal", {}, rows_of<Vec3>(scalars(*vertex_, {"nx", "ny", "nz"}), vertex_->count),
                [&](std::size_t t) {
                  const auto& [i, j, k] = mesh().triangles[t];
@@ -301,7 +303,8 @@ class Reader {
     const PlyProperty* bytes = element ? element->find("glb") : nullptr;
     if (!bytes || bytes->type != 'C' || bytes->values.empty() || mesh().attributes.group.empty()) return;
     std::string glb(bytes->values.size(), '\0');
-    for (std::size_t i = 0; i < glb.size(); ++i) glb[i] = static_cast<char>(static_cast<unsigned char>(bytes->values[i]));
+    for (std::size_t i = 0; i < glb.size(); ++i)
+      glb[i] = static_cast<char>(static_cast<unsigned char>(bytes->values[i]));
     mesh().attributes.library.glb = std::make_shared<const std::string>(std::move(glb));
   }
 

@@ -94,6 +94,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
       lists.push_back({"color", block_of(a.color, true)});
   }
   if (!a.uv.empty()) lists.push_back({"texcoord", block_of(a.uv)});
+  if (!a.uv2.empty()) lists.push_back({"texcoord2", block_of(a.uv2)});
 
   std::size_t contacts = 0;
   for (const auto& f : fronts)

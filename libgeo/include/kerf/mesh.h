@@ -32,6 +32,7 @@ struct MaterialLibrary {
 /// vertices of their own. Each array is as long as the mesh's list of triangles, or empty.
 struct Attributes {
   std::vector<std::array<Vec2, 3>> uv;
+  std::vector<std::array<Vec2, 3>> uv2;  ///< a second set, as materials of a library use it
   std::vector<std::array<Vec3, 3>> normal;
   std::vector<std::array<Color, 3>> color;
   std::vector<std::int32_t> group;       ///< per triangle: index into group_names
@@ -40,8 +41,8 @@ struct Attributes {
   MaterialLibrary library = {};          ///< materials of these names, where a .glb brought them
 
   /// True when no array has values.
-  bool empty() const { return uv.empty() && normal.empty() && color.empty() && group.empty(); }
-  /// Names of the arrays that have values: "uv", "normal", "color", "group".
+  bool empty() const { return uv.empty() && uv2.empty() && normal.empty() && color.empty() && group.empty(); }
+  /// Names of the arrays that have values: "uv", "uv2", "normal", "color", "group".
   std::vector<std::string> names() const;
   /// Whether all values are equal.
   friend bool operator==(const Attributes&, const Attributes&) = default;

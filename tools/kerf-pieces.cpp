@@ -130,7 +130,8 @@ void write(const std::string& path, const Command& w, const std::vector<geo::Chu
   geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, set.chunks, set.bonds, set.labels); });
 }
 
-// Says what is not as in the model: a unit that is assumed, an offset, what the format does not hold.
+// Says what is not as in the model: a unit that is assumed, an offset, what the format does not
+// hold.
 void say_assumptions(const tool::Tool& t, const Command& w, const std::vector<geo::Chunk>& chunks) {
   const std::string& path = t.output_path;
   const bool usd = path.ends_with(".usda"), glb = path.ends_with(".glb");

@@ -181,7 +181,8 @@ class Collector {
     if (unplaced_) notes.push_back("a skin has bones without nodes; its vertices stay where their node places them");
   }
 
-  // The transform of each vertex of a mesh with bones: the weighted mean of what its bones do. Empty without bones.
+  // The transform of each vertex of a mesh with bones: the weighted mean of what its bones do.
+  // Empty without bones.
   std::vector<Transform> bone_places(const aiMesh& mesh, const Transform& node) {
     std::vector<Transform> sum;
     if (mesh.mNumBones == 0) return sum;
@@ -319,7 +320,8 @@ SurfaceFile assimp_surface(const std::string& bytes, const std::string& name, co
     if (const auto at = text.find(files.path()); at != text.npos) text.replace(at, files.path().size(), name);
     throw InputError(name + ": assimp cannot read it: " + shown(text, 200));
   }
-  // The roots of these formats have no transform of their own. assimp gives them one that turns and scales the scene.
+  // The roots of these formats have no transform of their own. assimp gives them one that turns and
+  // scales the scene.
   const bool added = ending == "dae" || ending == "zae" || ending == "fbx";
   return Collector(*scene, name, added ? RootTransform::of_assimp : RootTransform::of_file).collect();
 }

@@ -1,5 +1,5 @@
-// io/gltf_document.h, after the specification of glTF 2.0 (sections 3.6 and 4.4). Every size is compared with the
-// bytes that there are before memory is allocated.
+// io/gltf_document.h, after the specification of glTF 2.0 (sections 3.6 and 4.4). Every size is
+// compared with the bytes that there are before memory is allocated.
 #include "io/gltf_document.h"
 
 #include <algorithm>
@@ -14,7 +14,8 @@
 namespace geo {
 namespace {
 
-// Extensions with which a file is read rightly. Those of materials, lights and physics change no shape.
+// Extensions with which a file is read rightly. Those of materials, lights and physics change no
+// shape.
 constexpr std::string_view known_extensions[] = {"KHR_mesh_quantization",
                                                  "EXT_mesh_gpu_instancing",
                                                  "KHR_node_visibility",
@@ -90,7 +91,8 @@ T value_at(const char* bytes) {
   return value;
 }
 
-// A number of an accessor. Normalised integers follow section 3.6.2.2: c / 255, max(c / 127, −1) and so on.
+// A number of an accessor. Normalised integers follow section 3.6.2.2: c / 255, max(c / 127, −1)
+// and so on.
 double number_at(const char* bytes, std::size_t type, bool normalized) {
   switch (type) {
     case 5120: {

@@ -1,4 +1,5 @@
-// A glTF 2.0 file, binary or text, that is read: its JSON, its buffers, and the numbers of its accessors.
+// A glTF 2.0 file, binary or text, that is read: its JSON, its buffers, and the numbers of its
+// accessors.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +29,8 @@ class GltfDocument {
   using Json = nlohmann::json;
 
   /// Parses a .glb or .gltf. `bytes` must outlive the document; files that it names are looked for
-  /// in the folder of `name` and below. Throws InputError: damaged, another version, or an extension
-  /// that is required and not known here, which the message names.
+  /// in the folder of `name` and below. Throws InputError: damaged, another version, or an
+  /// extension that is required and not known here, which the message names.
   GltfDocument(const std::string& bytes, const std::string& name);
 
   /// Throws InputError with the file's name first.

@@ -1,5 +1,5 @@
-// io/gltf_materials.h. Descriptions are copied as JSON, so that what this code does not know is kept; only indices of
-// textures, samplers and images change.
+// io/gltf_materials.h. Descriptions are copied as JSON, so that what this code does not know is
+// kept; only indices of textures, samplers and images change.
 #include "io/gltf_materials.h"
 
 #include <algorithm>
@@ -67,8 +67,8 @@ std::vector<std::string> extensions_in(Json& descriptions) {
   return names;
 }
 
-// Writes the descriptions that are listed into `file`. `to_texture`, `to_sampler` and `to_image` number the textures,
-// samplers and images, which are written as they are named.
+// Writes the descriptions that are listed into `file`. `to_texture`, `to_sampler` and `to_image`
+// number the textures, samplers and images, which are written as they are named.
 class Copier {
  public:
   Copier(GltfDocument& from, GlbFile& to) : from_(from), to_(to) {
@@ -109,12 +109,13 @@ class Copier {
     return entries;
   }
 
-  // Removes uses of textures, among the members of an object, whose texture coordinates are not there.
+  // Removes uses of textures, among the members of an object, whose texture coordinates are not
+  // there.
   void drop_textures(Json& object, std::size_t uv_sets) {
     std::vector<std::string> gone;
     for (const auto& [key, use] : object.items()) {
       if (!names_texture(key) || !use.is_object() || !use.contains("index")) continue;
-      Json set = use.value("texCoord", Json(0));
+      Json set = use.value("texCoord", Json(0u));
       if (use.contains("/extensions/KHR_texture_transform/texCoord"_json_pointer))
         set = use["extensions"]["KHR_texture_transform"]["texCoord"];
       if (!set.is_number_unsigned() || set.get<std::size_t>() >= uv_sets) gone.push_back(key);
@@ -127,7 +128,8 @@ class Copier {
     Json description = from_.entry("textures", texture);
     if (description.contains("sampler"))
       description["sampler"] = samplers_before_ + samplers_.of(index_in(from_, description["sampler"], "samplers"));
-    // Extensions name an image in another format beside, or in place of, that of the texture itself.
+    // Extensions name an image in another format beside, or in place of, that of the texture
+    // itself.
     for_each_object(description, "", [&](Json& object, const std::string&) {
       if (object.contains("source"))
         object["source"] = images_before_ + images_.of(index_in(from_, object["source"], "images"));

@@ -1,4 +1,5 @@
-// Materials and images of a glTF file that travel with a surface, as a .glb of their own without nodes and meshes.
+// Materials and images of a glTF file that travel with a surface, as a .glb of their own without
+// nodes and meshes.
 #pragma once
 
 #include <cstddef>

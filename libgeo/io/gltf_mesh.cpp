@@ -48,7 +48,8 @@ class PrimitiveReader {
   }
 
  private:
-  // Compressed data may stand beside uncompressed ones, which then are read. An accessor without any is not all zero.
+  // Compressed data may stand beside uncompressed ones, which then are read. An accessor without
+  // any is not all zero.
   void require_uncompressed() {
     if (GltfDocument::extension(primitive_, "KHR_draco_mesh_compression").is_null()) return;
     std::vector<std::size_t> accessors;
@@ -63,7 +64,8 @@ class PrimitiveReader {
             "without compression");
   }
 
-  // The rows of an attribute with as many numbers as that, one for each vertex; null where there is none.
+  // The rows of an attribute with as many numbers as that, one for each vertex; null where there is
+  // none.
   const GltfRows* rows(const std::string& name, std::size_t least, std::size_t most) {
     const auto at = document_.index(attributes_, name.c_str());
     if (!at) return nullptr;

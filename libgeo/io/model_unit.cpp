@@ -1,5 +1,5 @@
-// io/model_unit.h; length_unit() of kerf/files.h. Attributes of XML are found as text: a whole parser would add
-// nothing, as the elements that state a unit stand once, near the beginning.
+// io/model_unit.h; length_unit() of kerf/files.h. Attributes of XML are found as text: a whole
+// parser would add nothing, as the elements that state a unit stand once, near the beginning.
 #include "io/model_unit.h"
 
 #include <zlib.h>
@@ -54,8 +54,8 @@ std::uint32_t little(std::string_view bytes, std::size_t at, std::size_t size) {
   return value;
 }
 
-// The first bytes of the entry of a ZIP archive whose name has that ending, from its central directory. Sizes in
-// local headers may be missing. Empty where there is none.
+// The first bytes of the entry of a ZIP archive whose name has that ending, from its central
+// directory. Sizes in local headers may be missing. Empty where there is none.
 std::string beginning_of_entry(const std::string& bytes, std::string_view ending) {
   constexpr std::size_t wanted = 1 << 16;                // bytes, which hold the first element of a model
   constexpr std::size_t end_size = 22, entry_size = 46;  // bytes of the records without their texts

@@ -1,4 +1,5 @@
-// The unit of length that a file of another program states, for formats whose reader does not pass it on.
+// The unit of length that a file of another program states, for formats whose reader does not pass
+// it on.
 #pragma once
 
 #include <string>

@@ -37,8 +37,9 @@ PieceSet in_metres(const std::vector<Chunk>& chunks, const std::vector<Bond>& bo
 }
 
 Vec3 single_precision_offset(const Box3& box) {
-  // A coordinate c has an error of 2⁻²⁴ |c|. Walls of neighbouring pieces fit while that is less than a quarter of a
-  // pixel where a piece, a sixteenth of the model, fills a picture of 4096 pixels: 2⁻¹⁸ diagonals.
+  // A coordinate c has an error of 2⁻²⁴ |c|. Walls of neighbouring pieces fit while that is less
+  // than a quarter of a pixel where a piece, a sixteenth of the model, fills a picture of 4096
+  // pixels: 2⁻¹⁸ diagonals.
   constexpr double farthest = 64;  // diagonals from the origin, 2⁻¹⁸ / 2⁻²⁴
   if (box.empty()) return Vec3::Zero();
   const double largest = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());

@@ -163,7 +163,8 @@ namespace {
 
 enum class PlyFormat { ascii, little_endian, big_endian };
 
-// The character that ends the lines of the header: the first one, as binary rows may hold the other.
+// The character that ends the lines of the header: the first one, as binary rows may hold the
+// other.
 char header_end(std::string_view bytes) {
   const auto at = bytes.find_first_of("\r\n");
   const bool only_return = at != bytes.npos && bytes[at] == '\r' && bytes.substr(at + 1, 1) != "\n";

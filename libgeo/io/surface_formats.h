@@ -26,10 +26,10 @@ bool is_exact_binary_stl(const std::string& bytes);
 /// Reads ASCII or binary STL.
 TriangleMesh parse_stl(const std::string& bytes, const std::string& name, std::vector<std::string>& notes);
 
-/// Reads glTF 2.0, binary or text: all meshes of the default scene, as its nodes, instances and skins
-/// place them. Vertices with a skin stand where its joints place them in the file's pose. Materials
-/// become groups, with a library of them. Throws InputError as parse_surface(), and where the file
-/// requires an extension that is not known here.
+/// Reads glTF 2.0, binary or text: all meshes of the default scene, as its nodes, instances and
+/// skins place them. Vertices with a skin stand where its joints place them in the file's pose.
+/// Materials become groups, with a library of them. Throws InputError as parse_surface(), and where
+/// the file requires an extension that is not known here.
 SurfaceFile parse_gltf(const std::string& bytes, const std::string& name);
 
 /// A number as an index; ~0u (no index) if it is negative, fractional or too large.

@@ -1,4 +1,5 @@
-// parse_gltf() of io/surface_formats.h: all meshes of the scene, as its nodes, instances and skins place them.
+// parse_gltf() of io/surface_formats.h: all meshes of the scene, as its nodes, instances and skins
+// place them.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -74,8 +75,8 @@ class GltfReader {
     }
   }
 
-  // The roots of the scene that the file shows by default, else of its first one. Without scenes, all nodes that are
-  // no other's children.
+  // The roots of the scene that the file shows by default, else of its first one. Without scenes,
+  // all nodes that are no other's children.
   std::vector<std::size_t> scene_roots() {
     const std::size_t scenes = document_.count("scenes"), nodes = document_.count("nodes");
     if (scenes > 0) {
@@ -92,7 +93,8 @@ class GltfReader {
     return roots;
   }
 
-  // Finds the place of each visit of a node. A node that several name counts as often; one below itself is refused.
+  // Finds the place of each visit of a node. A node that several name counts as often; one below
+  // itself is refused.
   void place_nodes(const std::vector<std::size_t>& roots) {
     struct Visit {
       std::size_t node, depth;
@@ -146,7 +148,8 @@ class GltfReader {
       }
       const GltfPrimitive part = read_primitive(document_, primitive, morph);
       const std::int32_t group = group_of(primitive);
-      // The place of a node with a skin has no effect (section 3.7.3.3): its joints place the vertices.
+      // The place of a node with a skin has no effect (section 3.7.3.3): its joints place the
+      // vertices.
       if (skin && part.joint_count > 0)
         add_skinned(part, *skin, group);
       else

@@ -1,5 +1,6 @@
-// parse_off() of io/surface_formats.h. OFF as Geomview defines it: the keyword's letters say which numbers a vertex
-// has, in this order: coordinates, normal (N), colour (C), texture coordinates (ST).
+// parse_off() of io/surface_formats.h. OFF as Geomview defines it: the keyword's letters say which
+// numbers a vertex has, in this order: coordinates, normal (N), colour (C), texture coordinates
+// (ST).
 #include <algorithm>
 
 #include "io/line_reader.h"
@@ -13,8 +14,8 @@ struct OffLayout {
   bool texture = false, colored = false, normals = false, homogeneous = false;
 };
 
-// The layout that a keyword stands for, in any letters; false for another word. A small n stands for coordinates of
-// any number, which are not read.
+// The layout that a keyword stands for, in any letters; false for another word. A small n stands
+// for coordinates of any number, which are not read.
 bool read_keyword(std::string_view word, OffLayout& layout) {
   std::string text(word);
   for (char& c : text) c = static_cast<char>(c >= 'a' && c <= 'z' && c != 'n' ? c - 'a' + 'A' : c);

@@ -82,8 +82,9 @@ class Reader {
     return indices && indices->count_type ? indices : nullptr;
   }
 
-  // Makes faces of triangle strips, behind the faces that there are. A negative index ends a strip. Each second
-  // triangle has its first two corners exchanged, and one with two equal corners only joins strips.
+  // Makes faces of triangle strips, behind the faces that there are. A negative index ends a strip.
+  // Each second triangle has its first two corners exchanged, and one with two equal corners only
+  // joins strips.
   void read_strips(const PlyElement& strips) {
     const PlyProperty* from = indices_of(strips);
     if (!from) throw InputError(name_ + ": its tristrips have no vertex_indices");

@@ -69,6 +69,34 @@ bool told_by_vertices(const TriangleMesh& mesh, const std::vector<std::array<V, 
   return true;
 }
 
+// The comments of the header: all that is text.
+void write_comments(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts,
+                    const std::string& comment) {
+  const Attributes& a = mesh.attributes;
+  if (!comment.empty()) out << "comment " << comment << '\n';
+  for (const auto& f : fronts) out << "comment kerf_front " << f.name << '\n';
+  for (const auto& name : a.group_names) out << "comment kerf_group " << name << '\n';
+  if (!a.materials.empty()) out << "comment kerf_materials " << a.materials << '\n';
+  if (mesh.unit > 0) out << "comment kerf_unit " << shortest(mesh.unit) << '\n';
+}
+
+// The rows of fronts and of their contacts.
+void put_fronts(std::string& row, const std::vector<FrontState>& fronts) {
+  for (const auto& f : fronts) {
+    put(row, f.crack);
+    put(row, f.step);
+    put<std::uint8_t>(row, f.closed);
+  }
+  for (std::uint32_t i = 0; i < fronts.size(); ++i)
+    for (std::uint32_t s = 0; s < fronts[i].segments.size(); ++s)
+      for (const auto& p : fronts[i].segments[s]) {
+        put(row, i);
+        put(row, s);
+        put<std::int32_t>(row, p.id.valid() ? static_cast<std::int32_t>(p.id.value) : -1);
+        for (int c = 0; c < 3; ++c) put(row, p.position[c]);
+      }
+}
+
 }  // namespace
 
 void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts,
@@ -100,11 +128,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
   for (const auto& f : fronts)
     for (const auto& s : f.segments) contacts += s.size();
   out << "ply\nformat binary_little_endian 1.0\n";
-  if (!comment.empty()) out << "comment " << comment << '\n';
-  for (const auto& f : fronts) out << "comment kerf_front " << f.name << '\n';
-  for (const auto& name : a.group_names) out << "comment kerf_group " << name << '\n';
-  if (!a.materials.empty()) out << "comment kerf_materials " << a.materials << '\n';
-  if (mesh.unit > 0) out << "comment kerf_unit " << shortest(mesh.unit) << '\n';
+  write_comments(out, mesh, fronts, comment);
   out << "element vertex " << mesh.vertices.size() << "\nproperty double x\nproperty double y\nproperty double z\n";
   if (mesh.two_sided()) out << "property uint site\n";
   for (const auto& [names, block] : vertex_blocks)
@@ -146,13 +170,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
     }
     flush(false);
   }
-  for (const auto& f : fronts) put(row, f.crack), put(row, f.step), put<std::uint8_t>(row, f.closed);
-  for (std::uint32_t i = 0; i < fronts.size(); ++i)
-    for (std::uint32_t s = 0; s < fronts[i].segments.size(); ++s)
-      for (const auto& p : fronts[i].segments[s]) {
-        put(row, i), put(row, s), put<std::int32_t>(row, p.id.valid() ? static_cast<std::int32_t>(p.id.value) : -1);
-        for (int c = 0; c < 3; ++c) put(row, p.position[c]);
-      }
+  put_fronts(row, fronts);
   if (library) {
     put(row, static_cast<std::uint32_t>(library->size()));
     row += *library;

@@ -1,8 +1,9 @@
 // parse_stl() of io/surface_formats.h. STL, ASCII and binary: triangles only, three vertices each.
 //
-// A binary file has a header of 80 bytes, the number of facets, and 50 bytes for each: normal, three corners, and
-// two bytes that some programs use for colours. Its header may begin with "solid", as an ASCII file does. So the length
-// decides first, then words that only an ASCII file has.
+// A binary file has a header of 80 bytes, the number of facets, and 50 bytes for each: normal,
+// three corners, and two bytes that some programs use for colours. Its header may begin with
+// "solid", as an ASCII file does. So the length decides first, then words that only an ASCII file
+// has.
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -39,7 +40,7 @@ bool looks_like_ascii_stl(const std::string& bytes) {
   LineReader lines(bytes, "", 0);
   std::vector<std::string_view> words;
   if (!lines.next(words) || small(words[0]) != "solid") return false;
-  // Binary headers end within 84 bytes; 64 lines leave room for blank ones and comments.
+  // Binary headers end within 84 bytes; 64 lines may be blank or comments.
   for (int i = 0; i < 64 && lines.next(words); ++i) {
     const std::string word = small(words[0]);
     if (word == "facet" || word == "endsolid") return true;
@@ -55,8 +56,8 @@ void corners_at(const std::string& bytes, std::size_t facet, Vec3 (&corners)[3])
   for (int k = 0; k < 3; ++k) corners[k] = Vec3(f[3 + 3 * k], f[4 + 3 * k], f[5 + 3 * k]);
 }
 
-// Whether bytes behind a header are facets: their normals are unit vectors or zero, as writers make them, and their
-// coordinates are finite. Other bytes are not that by chance.
+// Whether bytes behind a header are facets: their normals are unit vectors or zero, as writers make
+// them, and their coordinates are finite. Other bytes are not that by chance.
 bool looks_like_facets(const std::string& bytes, std::size_t count) {
   constexpr double tolerance = 0.01;  // of the length of a normal, which some programs write with few digits
   for (std::size_t t = 0; t < count; ++t) {
@@ -71,8 +72,8 @@ bool looks_like_facets(const std::string& bytes, std::size_t count) {
   return count > 0;
 }
 
-// The number of facets of a binary file: that of its header, or the number that its bytes hold where the header has
-// none. Zero: this is no binary file.
+// The number of facets of a binary file: that of its header, or the number that its bytes hold
+// where the header has none. Zero: this is no binary file.
 std::size_t binary_facets(const std::string& bytes, const std::string& name, std::vector<std::string>& notes) {
   if (bytes.size() < stl_head) return 0;
   const std::size_t count = count_of(bytes), held = (bytes.size() - stl_head) / stl_facet;

@@ -229,8 +229,8 @@ class UsdPieces {
   const std::vector<Bond>& bonds_;
   const ChunkLabels& labels_;
   const UsdOptions& options_;
-  // Numbers are in units of the stage: kg, the model's unit of length, and seconds. So a density of kg/m³ is
-  // multiplied by the cube of the unit, and a strength of N/m² = kg/(m s²) by the unit.
+  // Numbers are in units of the stage: kg, the model's unit of length, and seconds. So a density of
+  // kg/m³ is multiplied by the cube of the unit, and a strength of N/m² = kg/(m s²) by the unit.
   double unit_;
   Vec3 offset_;
   std::vector<std::vector<Vec3>> centroids_;                  // of clusters, by level

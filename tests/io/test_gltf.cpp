@@ -1,5 +1,5 @@
-// glTF: extensions that change a shape, skins, instances, quantised numbers, strips, sparse accessors; what is left
-// out; materials from one .glb to the next.
+// glTF: extensions that change a shape, skins, instances, quantised numbers, strips, sparse
+// accessors; what is left out; materials from one .glb to the next.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
@@ -72,7 +72,8 @@ std::string view_of(const std::string& glb, std::size_t view) {
   return glb.substr(28 + length + v.value("byteOffset", 0u), v["byteLength"].get<std::size_t>());
 }
 
-// A glTF file in the making: a tetrahedron of edge 1 about the origin's corner, as mesh 0 of node 0.
+// A glTF file in the making: a tetrahedron of edge 1 about the origin's corner, as mesh 0 of node
+// 0.
 struct Builder {
   Json json = {{"asset", {{"version", "2.0"}}},
                {"scenes", {{{"nodes", {0}}}}},
@@ -116,7 +117,8 @@ TEST_CASE("quantised positions have the size that their nodes give them", "[gltf
   CHECK(bounding_box(box).hi.isApprox(Vec3(2, 1, 1)));
   CHECK(signed_volume(box) == Approx(2));
   CHECK(check_surface(box, true).good());
-  // Integers that are not normalised, with a scale of 1/8192 in their node, as a packer writes them.
+  // Integers that are not normalised, with a scale of 1/8192 in their node, as a packer writes
+  // them.
   const TriangleMesh packed = case_of("packq.glb").mesh;
   CHECK(bounding_box(packed).lo.isApprox(Vec3(4, -1, -1)));
   CHECK((bounding_box(packed).hi - Vec3(6, 1, 1)).norm() < 1e-3);
@@ -319,7 +321,8 @@ TEST_CASE("materials, images and both texture coordinates go from one .glb to th
       CHECK(primitive["attributes"].contains("TEXCOORD_1"));
       CHECK(primitive["material"].get<std::size_t>() < 3);
     }
-  // The written file is read as the model was, and no texture coordinate has changed at an old vertex.
+  // The written file is read as the model was, and no texture coordinate has changed at an old
+  // vertex.
   const TriangleMesh last = parse_surface(glb, "pieces.glb").mesh;
   CHECK(last.attributes.group_names == std::vector<std::string>{"Oak", "Paint", "crack"});
   std::size_t same = 0;

@@ -1,5 +1,5 @@
-// STL, PLY, OFF and OBJ of all kinds that programs write: each is read as the same tetrahedron, or refused with a
-// reason.
+// STL, PLY, OFF and OBJ of all kinds that programs write: each is read as the same tetrahedron, or
+// refused with a reason.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
@@ -230,14 +230,14 @@ TEST_CASE("OFF: keywords of all layouts, counts on their line, what follows the 
 TEST_CASE("OBJ: fourth coordinates, colours, old keywords, lines and points, a long list before the vertices",
           "[kinds]") {
   const std::string f = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-  for (const std::string& text :
-       {"v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0 1\nv 0 0 1 1\n" + f,
-        "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 0 0 1 1 0 0\n" + f,
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nfo 1 3 2\nfo 1 2 4\nf -4 -1 -2\nf 2 \\\n 3 4\n", [&] {
-          std::string text;
-          for (int i = 0; i < 500; ++i) text += "vt 0 0\n";
-          return text + "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + f;
-        }()}) {
+  for (const std::string& text : std::vector<std::string>{
+           "v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0 1\nv 0 0 1 1\n" + f,
+           "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nv 0 0 1 1 0 0\n" + f,
+           "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nfo 1 3 2\nfo 1 2 4\nf -4 -1 -2\nf 2 \\\n 3 4\n", [&] {
+             std::string text;
+             for (int i = 0; i < 500; ++i) text += "vt 0 0\n";
+             return text + "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + f;
+           }()}) {
     INFO(text.substr(0, 30));
     const SurfaceFile file = read(text);
     check_tetrahedron(file.mesh);

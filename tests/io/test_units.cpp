@@ -21,7 +21,8 @@ nlohmann::json json_of(const std::string& glb) {
   return nlohmann::json::parse(glb.substr(20, length));
 }
 
-// Two halves of a block of edges 40, 20 and 20, its lowest corner at `at`, with the bond between them.
+// Two halves of a block of edges 40, 20 and 20, its lowest corner at `at`, with the bond between
+// them.
 PieceSet halves(const Vec3& at, double unit) {
   TriangleMesh block = make_block({40, 20, 20}, 50);
   for (Vec3& p : block.vertices) p += at;
@@ -187,7 +188,7 @@ TEST_CASE("frames of a run in UTM coordinates keep their shape in a .usda", "[un
   }
 }
 
-TEST_CASE("COLLADA, AMF, X3D and FBX keep the coordinates of the file, and its unit", "[units]") {
+TEST_CASE("COLLADA and AMF keep the coordinates of the file, and its unit", "[units]") {
   const std::string points = "0 0 0 1 0 0 0 2 0 0 0 3", corners = "0 2 1 0 1 3 0 3 2 1 2 3";
   for (const std::string up : {"X_UP", "Y_UP", "Z_UP"})
     for (const auto& [text, unit] : {std::pair<std::string, double>{"<unit name=\"inch\" meter=\"0.0254\"/>", 0.0254},
@@ -230,4 +231,26 @@ TEST_CASE("COLLADA, AMF, X3D and FBX keep the coordinates of the file, and its u
     CHECK(bounding_box(file.mesh).hi == Vec3(1, 2, 3));
     CHECK(file.mesh.unit == unit);
   }
+}
+
+TEST_CASE("FBX and 3MF keep the coordinates of the file, and its unit", "[units]") {
+  const auto read = [](const std::string& name) { return read_surface(KERF_IO_CASES "/other/" + name).mesh; };
+  // A box of 1 by 2 by 3 m at x = 10 m, with z up, in centimetres or in metres.
+  const TriangleMesh centimetres = read("zup.fbx"), metres = read("unit.fbx");
+  CHECK((bounding_box(centimetres).lo - Vec3(1000, 0, 0)).norm() < 1e-3);
+  CHECK((bounding_box(centimetres).hi - Vec3(1100, 200, 300)).norm() < 1e-3);
+  CHECK(centimetres.unit == Approx(0.01));
+  CHECK((bounding_box(metres).hi - bounding_box(metres).lo - Vec3(1, 3, 2)).norm() < 1e-5);  // y is up
+  CHECK(metres.unit == Approx(1));
+  // A cube of 1 m whose bone has been moved up by 5 m since the bind pose.
+  CHECK(bounding_box(read("skin.fbx")).lo.y() == Approx(500));
+  CHECK(signed_volume(read("skin.fbx")) == Approx(1e6));
+  // Items of the build, and components of objects, each with a transform. Without a unit: millimetres.
+  const TriangleMesh inches = read("in.3mf"), parts = read("comp.3mf");
+  CHECK(inches.unit == 0.0254);
+  CHECK(bounding_box(inches).hi == Vec3(11, 2, 3));
+  CHECK(signed_volume(inches) == Approx(2));
+  CHECK(parts.unit == 0.001);
+  CHECK(bounding_box(parts).hi == Vec3(11, 22, 3));
+  CHECK(signed_volume(parts) == Approx(4));
 }

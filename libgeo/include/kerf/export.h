@@ -57,8 +57,8 @@ struct PieceSet {
 };
 /// The same pieces in metres, by the unit of their meshes. Without a unit, one is a metre.
 PieceSet in_metres(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkLabels& labels);
-/// The point that writers of single-precision numbers subtract from coordinates; zero where it is not
-/// needed. The nearest single-precision number to the centre of the box, where a coordinate is
+/// The point that writers of single-precision numbers subtract from coordinates; zero where it is
+/// not needed. The nearest single-precision number to the centre of the box, where a coordinate is
 /// farther from the origin than 64 diagonals of the box.
 Vec3 single_precision_offset(const Box3& box);
 /// The box around the meshes of some pieces.
@@ -73,10 +73,10 @@ std::string cluster_name(std::size_t level, std::size_t cluster);
 
 /// Writes `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area",
 /// "normal", "centroid", "strength", "torque"}]}`. Torque: of bending, at which the stress at the
-/// edge of the wall is the strength. Lengths, areas and volumes are in model units. Where the meshes
-/// state a unit that is no metre, strength is in N, torque in N m, and "unit" has its metres. With clusters a piece has
-/// a "parent", and there are `"levels":
-/// [{"clusters": [{"name", "volume", "centroid", "parent"}], "bonds": […]}]`, fine to coarse.
+/// edge of the wall is the strength. Lengths, areas and volumes are in model units. Where the
+/// meshes state a unit that is no metre, strength is in N, torque in N m, and "unit" has its
+/// metres. With clusters a piece has a "parent", and there are `"levels": [{"clusters": [{"name",
+/// "volume", "centroid", "parent"}], "bonds": […]}]`, fine to coarse.
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                  const ChunkLabels& labels);
 
@@ -104,9 +104,9 @@ struct GlbOptions {
 /// hull_suffix(). The scene's `extras` hold what write_bonds() writes. Lengths are in metres, as
 /// glTF requires, by the unit of the meshes. Coordinates are in single precision, relative to each
 /// centroid. Far from the origin the root has single_precision_offset() as its translation. Groups
-/// with a material in the mesh's library get it, with its images. Triangles without patch are skin, corners without
-/// texture coordinates have (0, 0), a chunk without groups has one, "skin". Throws InputError for a chunk without
-/// triangles.
+/// with a material in the mesh's library get it, with its images. Triangles without patch are skin,
+/// corners without texture coordinates have (0, 0), a chunk without groups has one, "skin". Throws
+/// InputError for a chunk without triangles.
 ///
 /// With physics each piece is a dynamic body with exact mass and inertia, and its hulls are its
 /// collision shapes. Hulls with plain names then are no meshes of nodes, so
@@ -125,9 +125,9 @@ struct UsdOptions {
 /// Writes pieces as USD text with the schema UsdPhysics: a mesh for each piece, which is a rigid
 /// body with exact mass and inertia; clusters above them; and a fixed joint for each bond, which
 /// breaks at its strength (breakForce) and torque (breakTorque). Coordinates are the model's, and
-/// `metersPerUnit` is its unit. The root's translation is single_precision_offset(). Meshes have normals as in
-/// write_glb(), texture coordinates, patches, and a subset and a material for each group. Throws InputError for a chunk
-/// without triangles.
+/// `metersPerUnit` is its unit. The root's translation is single_precision_offset(). Meshes have
+/// normals as in write_glb(), texture coordinates, patches, and a subset and a material for each
+/// group. Throws InputError for a chunk without triangles.
 void write_usd_pieces(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                       const ChunkLabels& labels, const UsdOptions& options = {});
 

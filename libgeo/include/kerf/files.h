@@ -105,7 +105,7 @@ void discard_temporary_outputs();
 struct SurfaceFile {
   TriangleMesh mesh;
   std::vector<FrontState> fronts;
-  /// What the reader left out or assumed, each without the file's name and of one line: "left out: 2
+  /// Lines that say what the reader left out or assumed, without the file's name: "left out: 2
   /// cameras". Tools print them to standard error.
   std::vector<std::string> notes = {};
 };

@@ -17,8 +17,8 @@ namespace geo {
 
 using Color = Eigen::Vector4d;  ///< red, green, blue, alpha; 0 … 1
 
-/// Materials with their images, as a .glb (glTF 2.0) without nodes and meshes: a material for each of
-/// some groups, with the group's name. It goes unchanged from a .glb that is read to one that is
+/// Materials with their images, as a .glb (glTF 2.0) without nodes and meshes: a material for each
+/// of some groups, with the group's name. It goes unchanged from a .glb that is read to one that is
 /// written. Copies share the bytes.
 struct MaterialLibrary {
   std::shared_ptr<const std::string> glb;  ///< null: none

@@ -41,10 +41,12 @@ Vec3 single_precision_offset(const Box3& box) {
   // than a quarter of a pixel where a piece, a sixteenth of the model, fills a picture of 4096
   // pixels: 2⁻¹⁸ diagonals.
   constexpr double farthest = 64;  // diagonals from the origin, 2⁻¹⁸ / 2⁻²⁴
-  if (box.empty()) return Vec3::Zero();
+  if (!(box.diagonal() > 0)) return Vec3::Zero();
   const double largest = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
   if (!(largest > farthest * box.diagonal())) return Vec3::Zero();
-  return box.center().cast<float>().cast<double>();
+  Vec3 offset = box.center();
+  for (double& x : offset) x = static_cast<double>(static_cast<float>(x));
+  return offset;
 }
 
 Box3 bounding_box(const std::vector<Chunk>& chunks) {

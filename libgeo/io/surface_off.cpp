@@ -25,11 +25,10 @@ bool read_keyword(std::string_view word, OffLayout& layout) {
     rest.remove_prefix(prefix.size());
     return true;
   };
-  layout.texture = taken("ST");
-  layout.colored = taken("C");
-  layout.normals = taken("N");
-  layout.homogeneous = taken("4");
-  return rest == "OFF";
+  const bool texture = taken("ST"), colored = taken("C"), normals = taken("N"), homogeneous = taken("4");
+  if (rest != "OFF") return false;
+  layout = {.texture = texture, .colored = colored, .normals = normals, .homogeneous = homogeneous};
+  return true;
 }
 
 class OffReader {

@@ -37,6 +37,21 @@ geo::SurfaceFile with_warnings(geo::SurfaceFile&& file, const std::string& name,
   return std::move(file);
 }
 
+// Warns of what an OBJ file does not hold.
+void warn_of_obj(const geo::TriangleMesh& mesh, const std::string& path) {
+  if (!path.ends_with(".obj") || (!mesh.attributes.library.glb && mesh.attributes.uv2.empty())) return;
+  const std::string text =
+      path + ": left out: materials but their names, second texture coordinates; a .ply keeps them";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+// Warns where a .glb gets an offset.
+void warn_of_offset(const geo::Box3& box, const std::string& path) {
+  if (!path.ends_with(".glb") || geo::single_precision_offset(box).isZero(0)) return;
+  const std::string text = path + ": the model is far from the origin; the root node moves it there";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 geo::SurfaceFile parsed(const std::string& bytes, const std::string& name, const std::string& unit) {
   return with_warnings(without_gil([&] { return geo::parse_surface(bytes, name); }), name, unit);
 }
@@ -117,6 +132,8 @@ void save_mesh(const Mesh& self, const Path& path, const std::string& unit_name)
   const std::string& p = path.text;
   const double unit = metres_of(unit_name);
   if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p);
+  warn_of_obj(self.mesh, p);
+  warn_of_offset(geo::bounding_box(self.mesh), p);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
       p.ends_with(".ply")   ? write_ply(out, self.mesh, unit)
@@ -162,6 +179,8 @@ void save_complex(Complex& self, const Path& path, const SaveOptions& w, const s
   if (w.corners != 0 && (w.corners < 4 || w.corners > 100000))
     throw geo::InputError("save: corners must be 0 or from 4 to 100000");
   if (w.parts < 1 || w.parts > 1000) throw geo::InputError("save: parts must be from 1 to 1000");
+  if (self.model) warn_of_obj(self.model->mesh, p);
+  warn_of_offset(self.complex.extent(), p);
   const Reading reading(self.busy);
   const auto found = p.ends_with(".glb") ? self.found() : nullptr;
   std::vector<geo::FrontState> fronts;

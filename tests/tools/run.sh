@@ -229,7 +229,6 @@ readers)
   expect 65 "meshopt.glb: requires the glTF extension EXT_meshopt_compression, .*; save it" kerf-crack "$cases/gltf/meshopt.glb" --jagged 0.1 -o x.ply
   for file in "$cases"/stl/*.stl; do quietly kerf-info --check -q "$file"; done
   # Readers say what they leave out, and -q is silent.
-  { cat "$cases/stl/ascii-lead.stl"; } >a.stl
   printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nl 1 2\n' >lines.obj
   said "kerf-repair: lines.obj: left out: 1 polyline" kerf-repair lines.obj --json -o tetrahedron.ply >/dev/null
   quietly kerf-repair -q lines.obj -o tetrahedron.ply
@@ -255,7 +254,7 @@ END
   said "folder: left out: materials but their names" kerf-pieces broken.ply -o folder
   said "pieces.usda: left out: materials but their names" kerf-pieces broken.ply -o pieces.usda
   printf '[body]\nmesh = "%s"\nspacing = 0.3\n[time]\nframes = 1\n' "$(realpath "$cases/gltf/prop.glb")" >prop.toml
-  said "prop.glb: left out: materials but their names" kerf-sim prop.toml -o prop
+  kerf-sim prop.toml -o prop 2>&1 | grep -q 'prop.glb: left out: materials but their names' || fail "kerf-sim says nothing of materials"
   # Units: a part of 40 mm weighs what it weighs.
   mass() { /usr/bin/python3 -c 'import json, sys; d = open(sys.argv[1], "rb").read(); n = int.from_bytes(d[12:16], "little"); print(*sorted("%.4g" % m["extensions"]["OMI_physics_body"]["motion"]["mass"] for m in json.loads(d[20:20 + n])["nodes"] if "motion" in m.get("extensions", {}).get("OMI_physics_body", {})))' "$1"; }
   awk '/^ *vertex/ { print "vertex", 40 * $2, 40 * $3, 40 * $4; next } { print }' "$cases/stl/ascii-lead.stl" >part.stl
@@ -273,8 +272,8 @@ END
   said "part.obj: left out: the unit" kerf-crack part.ply --jagged 0.01 -o part.obj
   expect 2 "'lightyear' is no unit of length; give one of m, cm, mm" kerf-pieces part.stl --unit lightyear -o x.glb
   printf '[body]\nmesh = "part.ply"\nspacing = 0.02\n[time]\nframes = 1\n' >part.toml
-  said "part.ply: states a unit of 0.001 m, but a scene is in metres; give the body scale = 0.001" kerf-sim part.toml --set body.spacing=15 -o large
-  quietly kerf-sim part.toml --set body.scale=0.001 -o small
+  kerf-sim part.toml --set body.spacing=15 -o large 2>&1 | grep -q 'part.ply: states a unit of 0.001 m, but a scene is in metres; give the body scale = 0.001$' || fail "kerf-sim says nothing of a unit"
+  kerf-sim part.toml --set body.scale=0.001 -o small 2>&1 | grep -q 'states a unit' && fail "kerf-sim speaks of the unit of a scaled body"
   [ "$(size small/frames/frame_0000.ply)" = "; 0.04 × 0.04 × 0.04" ] || fail "a scaled body: $(size small/frames/frame_0000.ply)"
   # Far from the origin: an offset on the root, said once.
   awk '/^ *vertex/ { printf "vertex %.9f %.9f %.9f\n", 691234.5678 + $2, 5401234.5678 + $3, 512.3 + $4; next } { print }' "$cases/stl/ascii-lead.stl" >far.stl

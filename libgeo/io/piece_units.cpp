@@ -15,6 +15,14 @@ std::vector<Bond> scaled(std::vector<Bond> bonds, double unit) {
   return bonds;
 }
 
+// The nearest number in single precision. gcc 12 leaves out a cast to float and back in vectors.
+double to_single(double x) {
+  constexpr int digits = 24;  // binary ones of a float
+  int exponent = 0;
+  const double fraction = std::frexp(x, &exponent);
+  return std::ldexp(std::nearbyint(std::ldexp(fraction, digits)), exponent - digits);
+}
+
 }  // namespace
 
 PieceSet in_metres(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkLabels& labels) {
@@ -45,7 +53,7 @@ Vec3 single_precision_offset(const Box3& box) {
   const double largest = std::max(box.lo.cwiseAbs().maxCoeff(), box.hi.cwiseAbs().maxCoeff());
   if (!(largest > farthest * box.diagonal())) return Vec3::Zero();
   Vec3 offset = box.center();
-  for (double& x : offset) x = static_cast<double>(static_cast<float>(x));
+  for (double& x : offset) x = to_single(x);
   return offset;
 }
 

@@ -103,7 +103,7 @@ TEST_CASE("bodies of a part in millimetres have the mass of the part, in a .glb 
     const PieceSet set = halves({0, 0, 0}, unit);
     REQUIRE(set.chunks.size() == 2);
     const double mass = 2500 * 8000 * u * u * u;  // half of 40 · 20 · 20
-    // Of a square of edge a, bent about its diagonal: a³ / (6 √2).
+    // The section modulus of a square of edge a about its diagonal is a³ / (6 √2).
     const double force = 2e6 * 400 * u * u, torque = 2e6 * 8000 / (6 * std::sqrt(2.0)) * u * u * u;
     const auto json = json_of(glb_of(set));
     const auto& motion = piece_in(json)["extensions"]["KHR_physics_rigid_bodies"]["motion"];
@@ -169,6 +169,26 @@ TEST_CASE("pieces in UTM coordinates stay together in single precision", "[units
   CHECK(number_after(usd.substr(first), "(") == Approx(at.x() + 20).margin(0.1));
   CHECK(std::abs(number_after(usd.substr(second), "(")) < 20);
   CHECK(usd_of(halves({0, 0, 0}, 1)).find("def Xform \"pieces\"\n{\n    def Mesh") != usd.npos);
+}
+
+TEST_CASE("nodes of a frame in UTM coordinates keep their places", "[units]") {
+  for (const bool far : {false, true}) {
+    const Vec3 at = far ? Vec3(691234.56789, 5401234.56789, 512.3) : Vec3(0.1, 0.2, 0.3);
+    FrameNodes frame;
+    for (int i = 0; i < 3; ++i) {
+      frame.nodes.position.push_back(at + Vec3(0.01 * i, 0, 0));
+      frame.nodes.radius.push_back(1);
+      frame.nodes.spacing.push_back(0.5);
+      frame.nodes.volume.push_back(0.125);
+      frame.stress.push_back(i);
+    }
+    const std::string bytes = bytes_of([&](auto& out) { write_frame_nodes(out, frame); });
+    const FrameNodes again = parse_frame_nodes(bytes, "nodes.ply");
+    REQUIRE(again.nodes.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) CHECK((again.nodes.position[i] - frame.nodes.position[i]).norm() < 1e-7);
+    CHECK(again.stress == frame.stress);
+    CHECK((bytes.find("property double x") != bytes.npos) == far);
+  }
 }
 
 TEST_CASE("frames of a run in UTM coordinates keep their shape in a .usda", "[units]") {
@@ -246,7 +266,8 @@ TEST_CASE("FBX and 3MF keep the coordinates of the file, and its unit", "[units]
   // A cube of 1 m whose bone has been moved up by 5 m since the bind pose.
   CHECK(bounding_box(read("skin.fbx")).lo.y() == Approx(500));
   CHECK(signed_volume(read("skin.fbx")) == Approx(1e6));
-  // Items of the build, and components of objects, each with a transform. Without a unit: millimetres.
+  // Items of the build, and components of objects, each with a transform. Without a unit:
+  // millimetres.
   const TriangleMesh inches = read("in.3mf"), parts = read("comp.3mf");
   CHECK(inches.unit == 0.0254);
   CHECK(bounding_box(inches).hi == Vec3(11, 2, 3));

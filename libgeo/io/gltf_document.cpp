@@ -198,6 +198,7 @@ void GltfDocument::read_container(const std::string& bytes) {
       at += length;
     }
   }
+  while (text.ends_with('\0')) text.remove_suffix(1);  // padding of some programs
   constexpr int deepest = 200;  // levels: copies and texts of JSON need stack for each, and files have about ten
   const auto limit = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > deepest) fail("is a glTF file whose JSON is nested too deep");

@@ -1,6 +1,6 @@
 // write_frame_nodes() of kerf/files.h, write_series() of kerf/export.h. Nodes of a frame are binary
-// PLY in single precision, far from the origin with positions in double precision; a series is the JSON that ParaView
-// reads (.series).
+// PLY in single precision, far from the origin with positions in double precision; a series is the
+// JSON that ParaView reads (.series).
 #include "kerf/export.h"
 #include "kerf/files.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "io/gltf_document.h"
 #include "io/gltf_materials.h"
@@ -23,10 +24,18 @@ bool is_hull(std::string_view name) {
   return name.ends_with("-colonly") || name.ends_with("-convcolonly");
 }
 
+// Text formats divide lines into words, so that only single blanks come back.
+std::string with_single_blanks(const std::string& text) {
+  std::istringstream words(text);
+  std::string result;
+  for (std::string word; words >> word;) result += (result.empty() ? "" : " ") + word;
+  return result;
+}
+
 class GltfReader {
  public:
   GltfReader(const std::string& bytes, const std::string& name)
-      : document_(bytes, name), most_triangles_(std::max<std::size_t>(20'000'000, bytes.size())) {
+      : document_(bytes, name), most_triangles_(5'000'000 + bytes.size()) {
     const std::size_t meshes = document_.count("meshes");
     for (std::size_t i = 0; i < meshes; ++i)
       for (const Description& primitive : primitives_of(i)) look_at(primitive);
@@ -48,6 +57,12 @@ class GltfReader {
     std::size_t node;
     Eigen::Affine3d place;
     bool hidden;
+  };
+
+  struct Part {
+    GltfPrimitive primitive;
+    std::vector<double> morph;
+    bool read = false;
   };
 
   TriangleMesh& mesh() { return file_.mesh; }
@@ -146,7 +161,7 @@ class GltfReader {
         ++(document_.size(primitive, "mode", 4) == 0 ? points_ : lines_);
         continue;
       }
-      const GltfPrimitive part = read_primitive(document_, primitive, morph);
+      const GltfPrimitive& part = part_of(primitive, morph);
       const std::int32_t group = group_of(primitive);
       // The place of a node with a skin has no effect (section 3.7.3.3): its joints place the
       // vertices.
@@ -155,6 +170,13 @@ class GltfReader {
       else
         for (const Eigen::Affine3d& instance : instances) add(part, place * instance, group);
     }
+  }
+
+  // A primitive is read once for all nodes that name it, unless they have weights of their own.
+  const GltfPrimitive& part_of(const Description& primitive, const std::vector<double>& morph) {
+    Part& part = parts_[&primitive];
+    if (!part.read || part.morph != morph) part = {read_primitive(document_, primitive, morph), morph, true};
+    return part.primitive;
   }
 
   std::vector<double> morph_weights(const Description& node, std::size_t mesh_index) {
@@ -176,7 +198,7 @@ class GltfReader {
     if (!fresh) return at->second;
     std::string name = "default";
     if (material) {
-      name = shown(GltfDocument::text(document_.entry("materials", *material), "name"), 200);
+      name = with_single_blanks(shown(GltfDocument::text(document_.entry("materials", *material), "name"), 200));
       if (name.empty()) name = "material_" + std::to_string(*material);
     }
     const std::string beginning = name;
@@ -311,12 +333,15 @@ class GltfReader {
   }
 
   GltfDocument document_;
-  const std::size_t most_triangles_;  // of nodes and instances; a triangle that is stored has a byte at least
+  // Nodes and instances may repeat triangles: 1 GB, with some 200 bytes for each. A triangle that
+  // the file stores has a byte at least.
+  const std::size_t most_triangles_;
   bool uv_ = false, uv2_ = false, normal_ = false, color_ = false;  // whether some mesh has them
   std::set<std::string> others_;                                    // attributes that are left out
   std::vector<Placed> places_;
   std::map<std::size_t, Eigen::Affine3d> first_place_;  // of nodes
   std::map<std::size_t, std::vector<Eigen::Matrix4d>> skins_;
+  std::map<const Description*, Part> parts_;    // by their descriptions, which do not move
   std::map<std::size_t, std::int32_t> groups_;  // of materials
   std::vector<GltfGroup> materials_;
   std::size_t hulls_ = 0, hidden_ = 0, points_ = 0, lines_ = 0;

@@ -56,18 +56,15 @@ void corners_at(const std::string& bytes, std::size_t facet, Vec3 (&corners)[3])
   for (int k = 0; k < 3; ++k) corners[k] = Vec3(f[3 + 3 * k], f[4 + 3 * k], f[5 + 3 * k]);
 }
 
-// Whether bytes behind a header are facets: their normals are unit vectors or zero, as writers make
-// them, and their coordinates are finite. Other bytes are not that by chance.
+// Whether bytes behind a header are facets: all twelve numbers of each are zero or of a sensible
+// size. Integers, as other formats have them, are denormal numbers.
 bool looks_like_facets(const std::string& bytes, std::size_t count) {
-  constexpr double tolerance = 0.01;  // of the length of a normal, which some programs write with few digits
+  constexpr float least = 1e-30f, greatest = 1e12f;
   for (std::size_t t = 0; t < count; ++t) {
-    float f[3];
+    float f[12];
     std::memcpy(f, bytes.data() + stl_head + stl_facet * t, sizeof f);
-    const double length = Vec3(f[0], f[1], f[2]).norm();
-    if (!(length == 0 || std::abs(length - 1) < tolerance)) return false;
-    Vec3 corners[3];
-    corners_at(bytes, t, corners);
-    if (!corners[0].allFinite() || !corners[1].allFinite() || !corners[2].allFinite()) return false;
+    for (const float x : f)
+      if (x != 0 && !(std::abs(x) >= least && std::abs(x) <= greatest)) return false;
   }
   return count > 0;
 }

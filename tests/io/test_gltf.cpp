@@ -338,6 +338,41 @@ TEST_CASE("materials, images and both texture coordinates go from one .glb to th
   CHECK(same > 500);
 }
 
+TEST_CASE("materials of equal or no names are groups of their own, and names survive text formats", "[gltf]") {
+  Builder b;
+  b.primitive()["material"] = 0;
+  b.json["materials"] = {{{"name", " Oak  one\t"}}, {{"name", "Oak one"}}, Json::object(), {{"name", "unused"}}};
+  for (const int material : {1, 2})
+    b.json["meshes"][0]["primitives"].push_back(
+        {{"attributes", {{"POSITION", 0}}}, {"indices", 1}, {"material", material}});
+  b.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"indices", 1}});
+  const SurfaceFile file = b.read();
+  const std::vector<std::string> names = {"Oak one", "Oak one_2", "material_2", "default"};
+  CHECK(file.mesh.attributes.group_names == names);
+  CHECK(file.mesh.attributes.group == std::vector<std::int32_t>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3});
+  const SurfaceFile again = parse_surface(bytes_of([&](auto& out) { write_ply(out, file.mesh); }), "a.ply");
+  CHECK(again.mesh.attributes.group_names == names);
+  CHECK(again.mesh.attributes.library == file.mesh.attributes.library);
+  const Json library = json_of(*file.mesh.attributes.library.glb);
+  REQUIRE(library["materials"].size() == 3);
+  CHECK(library["materials"][2]["name"] == "material_2");
+}
+
+TEST_CASE("many nodes that share a mesh are read once, and their number is bounded", "[gltf]") {
+  Builder b;
+  const std::size_t count = 3000;
+  std::vector<float> at;
+  for (std::size_t i = 0; i < count; ++i) at.insert(at.end(), {float(2 * i), 0, 0});
+  b.node(0)["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = b.add(at, 5126, "VEC3", count);
+  CHECK(b.read().mesh.triangles.size() == 4 * count);
+  // Each node of a chain names the next one twice: 2^30 visits.
+  Builder doubled;
+  doubled.json["nodes"] = Json::array();
+  for (int i = 0; i < 30; ++i) doubled.json["nodes"].push_back({{"children", {i + 1, i + 1}}});
+  doubled.json["nodes"].push_back({{"mesh", 0}});
+  CHECK_THAT(refusal(doubled.bytes()), Catch::Contains("more than a million nodes"));
+}
+
 TEST_CASE("a texture that no texture coordinates place is left out with a word", "[gltf]") {
   Builder b;
   b.primitive()["material"] = 0;

@@ -60,7 +60,7 @@ std::string binary_stl(const std::string& header, std::uint32_t count) {
   const auto put = [&](auto x) { bytes.append(reinterpret_cast<const char*>(&x), sizeof x); };
   put(count);
   for (const auto& t : faces) {
-    const Vec3 n = face_normal(corners[t[0]], corners[t[1]], corners[t[2]]);
+    const Vec3 n = 0.3 * face_normal(corners[t[0]], corners[t[1]], corners[t[2]]);  // of any length
     for (int k = 0; k < 3; ++k) put(float(n[k]));
     for (const auto v : t)
       for (int k = 0; k < 3; ++k) put(float(corners[v][k]));

@@ -177,7 +177,7 @@ struct FrameNodes {
   NodeSet nodes;               ///< deformed positions; radius, spacing and volume of the undeformed material
   std::vector<double> stress;  ///< per node, von Mises, Pa
 };
-/// Writes a node file (binary PLY, single precision) with the stress as a further property.
+/// Writes a node file (binary PLY, single precision where that is enough) with the stress as well.
 void write_frame_nodes(std::ostream& out, const FrameNodes& frame);
 /// Reads such a file; `name` stands for it in messages. Throws InputError for any other file.
 FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name);

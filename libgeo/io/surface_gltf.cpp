@@ -198,7 +198,7 @@ class GltfReader {
     if (!fresh) return at->second;
     std::string name = "default";
     if (material) {
-      name = with_single_blanks(shown(GltfDocument::text(document_.entry("materials", *material), "name"), 200));
+      name = shown(with_single_blanks(GltfDocument::text(document_.entry("materials", *material), "name")), 200);
       if (name.empty()) name = "material_" + std::to_string(*material);
     }
     const std::string beginning = name;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cases.h"
 #include "io/in_child.h"
 #include "io/mutate.h"
 #include "io/samples.h"

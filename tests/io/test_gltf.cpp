@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "io/samples.h"
@@ -336,6 +337,64 @@ TEST_CASE("materials, images and both texture coordinates go from one .glb to th
                   (last.attributes.uv2[t][k] - file.mesh.attributes.uv2[s][j]).norm() < 1e-6;
         }
   CHECK(same > 500);
+}
+
+TEST_CASE("all that a material names comes with it: textures, samplers, images, extensions", "[gltf]") {
+  Builder b;
+  const std::string png = "\x89PNG\r\n\x1a\n first", jpeg = "\xff\xd8 second", webp = "RIFF____WEBP third";
+  b.primitive()["material"] = 1;
+  b.primitive()["attributes"]["TEXCOORD_0"] = b.add<float>({0, 0, 1, 0, 0, 1, 1, 1}, 5126, "VEC2", 4);
+  b.primitive()["attributes"]["TEXCOORD_1"] = b.add<float>({0, 0, 1, 0, 0, 1, 1, 1}, 5126, "VEC2", 4);
+  b.json["images"] = Json::array();
+  for (const std::string& image : {png, jpeg, webp}) {
+    b.add(std::vector<char>(image.begin(), image.end()), 5121, "SCALAR", image.size());
+    b.json["images"].push_back({{"bufferView", b.json["bufferViews"].size() - 1}});
+  }
+  b.json["images"][1]["mimeType"] = "image/jpeg";
+  b.json["samplers"] = {{{"wrapS", 33071}}, {{"wrapS", 10497}}};
+  b.json["textures"] = {{{"source", 0}},
+                        {{"source", 1}, {"sampler", 1}, {"name", "bark"}},
+                        {{"extensions", {{"EXT_texture_webp", {{"source", 2}}}}}}};
+  b.json["materials"] = {
+      {{"name", "other"}},
+      {{"name", "Tree"},
+       {"alphaMode", "MASK"},
+       {"alphaCutoff", 0.25},
+       {"emissiveFactor", {0.5, 0, 0}},
+       {"occlusionTexture", {{"index", 1}, {"texCoord", 1}, {"strength", 0.5}}},
+       {"normalTexture", {{"index", 1}, {"scale", 2}}},
+       {"extensions",
+        {{"KHR_materials_clearcoat", {{"clearcoatTexture", {{"index", 2}}}}}, {"VENDOR_shine", {{"power", 3}}}}}}};
+  b.json["extensionsUsed"] = {"EXT_texture_webp", "KHR_materials_clearcoat"};
+  b.json["extensionsRequired"] = {"EXT_texture_webp"};
+  const SurfaceFile file = b.read();
+  CHECK(file.notes.empty());
+  const std::string glb = bytes_of([&](auto& out) {
+    write_glb(out, {{file.mesh, 1.0 / 6, Vec3(0.25, 0.25, 0.25)}}, {}, {"node", {"piece_000"}, 1});
+  });
+  const Json json = json_of(glb);
+  REQUIRE(json["materials"].size() == 1);
+  const Json& tree = json["materials"][0];
+  CHECK(tree["alphaCutoff"] == 0.25);
+  CHECK(tree["emissiveFactor"] == b.json["materials"][1]["emissiveFactor"]);
+  CHECK(tree["normalTexture"]["scale"] == 2);
+  CHECK(tree["occlusionTexture"]["texCoord"] == 1);
+  CHECK(tree["extensions"]["VENDOR_shine"]["power"] == 3);
+  const auto image_of = [&](const Json& source) { return json["images"][source.get<std::size_t>()]; };
+  const auto texture_of = [&](const Json& use) { return json["textures"][use["index"].get<std::size_t>()]; };
+  const Json bark = texture_of(tree["normalTexture"]);
+  CHECK(bark["name"] == "bark");
+  CHECK(bark == texture_of(tree["occlusionTexture"]));
+  CHECK(json["samplers"][bark["sampler"].get<std::size_t>()]["wrapS"] == 10497);
+  CHECK(view_of(glb, image_of(bark["source"])["bufferView"]) == jpeg);
+  const Json coat = texture_of(tree["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"]);
+  const Json third = image_of(coat["extensions"]["EXT_texture_webp"]["source"]);
+  CHECK(third["mimeType"] == "image/webp");
+  CHECK(view_of(glb, third["bufferView"]) == webp);
+  CHECK(json["images"].size() == 2);  // nothing names the first one
+  CHECK(json["extensionsRequired"] == Json{"EXT_texture_webp"});
+  const std::set<std::string> used = json["extensionsUsed"];
+  CHECK(used == std::set<std::string>{"EXT_texture_webp", "KHR_materials_clearcoat", "VENDOR_shine"});
 }
 
 TEST_CASE("materials of equal or no names are groups of their own, and names survive text formats", "[gltf]") {

@@ -173,6 +173,7 @@ class Collector {
     add(scene_.mNumCameras, "camera");
     add(scene_.mNumLights, "light");
     add(scene_.mNumAnimations, "animation");
+    if (skinned_) things.push_back("skins (applied)");
     add(hulls_, "collision shape");
     if (thin_faces_ > 0) things.push_back(counted(thin_faces_, "point or line", "points and lines"));
     if (second_uv_) things.push_back("further texture coordinates");
@@ -222,6 +223,7 @@ class Collector {
 
   void add(const aiMesh& mesh, const Transform& node) {
     const auto bones = bone_places(mesh, node);
+    skinned_ = skinned_ || !bones.empty();
     const Transform& transform = bones.empty() ? node : bones[0];
     second_uv_ = second_uv_ || mesh.HasTextureCoords(1);
     second_color_ = second_color_ || mesh.HasVertexColors(1);
@@ -293,7 +295,7 @@ class Collector {
   std::vector<Visit> visits_;
   std::map<std::string, Transform, std::less<>> places_;  // of nodes by name
   std::size_t hulls_ = 0, thin_faces_ = 0;                // that are left out
-  bool second_uv_ = false, second_color_ = false, unplaced_ = false;
+  bool second_uv_ = false, second_color_ = false, unplaced_ = false, skinned_ = false;
   bool uv_ = false, normal_ = false, color_ = false;  // whether some mesh has them
   TriangleMesh mesh_;
   std::map<std::string, std::int32_t> groups_;

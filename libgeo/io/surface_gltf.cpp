@@ -163,6 +163,9 @@ class GltfReader {
       }
       const GltfPrimitive& part = part_of(primitive, morph);
       const std::int32_t group = group_of(primitive);
+      const Description& targets = GltfDocument::member(primitive, "targets");
+      for (std::size_t i = 0; targets.is_array() && i < targets.size(); ++i)
+        unmoved_ += i >= morph.size() || morph[i] == 0;
       // The place of a node with a skin has no effect (section 3.7.3.3): its joints place the
       // vertices.
       if (skin && part.joint_count > 0)
@@ -325,6 +328,9 @@ class GltfReader {
         GltfDocument::member(GltfDocument::extension(document_.json(), "KHR_lights_punctual"), "lights");
     add(lights.is_array() ? lights.size() : 0, "light");
     add(document_.count("animations"), "animation");
+    if (unmoved_ > 0)
+      left_out_.push_back(counted(unmoved_, "morph target without weight", "morph targets without weight"));
+    if (skins_.size() > 0) left_out_.push_back(counted(skins_.size(), "skin (applied)", "skins (applied)"));
     for (const std::string& name : others_) left_out_.push_back("attribute " + name);
     for (const std::string& name : document_.unknown_extensions()) left_out_.push_back("extension " + name);
     if (!GltfDocument::extension(document_.json(), "KHR_materials_variants").is_null())
@@ -344,7 +350,7 @@ class GltfReader {
   std::map<const Description*, Part> parts_;    // by their descriptions, which do not move
   std::map<std::size_t, std::int32_t> groups_;  // of materials
   std::vector<GltfGroup> materials_;
-  std::size_t hulls_ = 0, hidden_ = 0, points_ = 0, lines_ = 0;
+  std::size_t hulls_ = 0, hidden_ = 0, points_ = 0, lines_ = 0, unmoved_ = 0;
   std::vector<std::string> left_out_;
   SurfaceFile file_;
 };

@@ -1,6 +1,7 @@
 // parse_obj() of io/surface_formats.h, write_obj() of kerf/files.h. Wavefront OBJ: texture
 // coordinates, normals, colours of vertices, materials or groups.
 #include <bit>
+#include <limits>
 #include <map>
 
 #include "io/line_reader.h"
@@ -89,15 +90,22 @@ class ObjReader {
     if (weighted_) notes_.push_back("the fourth coordinates of its vertices are weights of curves and have no effect");
   }
 
+  // Stands for a colour that is missing or not finite, and becomes white.
+  static Color no_color() { return Color::Constant(std::numeric_limits<double>::quiet_NaN()); }
+
   void read_vertex() {
     if (words_.size() < 4) lines_.fail("a vertex needs three coordinates");
     mesh_.vertices.push_back({lines_.real(words_[1]), lines_.real(words_[2]), lines_.real(words_[3])});
-    color_.push_back(Color::Ones());
+    color_.push_back(no_color());
     weighted_ = weighted_ || (words_.size() == 5 && lines_.any_real(words_[4]) != 1);
     if (words_.size() != 7) return;
     colored_ = true;
     for (int k = 0; k < 3; ++k) color_.back()[k] = lines_.any_real(words_[4 + static_cast<std::size_t>(k)]);
-    if (!color_.back().allFinite()) color_.back() = Color::Ones();
+    color_.back()[3] = 1;
+    if (!color_.back().allFinite()) color_.back() = no_color();
+    if (!color_.back().allFinite()) return;
+    brightest_ = std::max(brightest_, color_.back().head<3>().maxCoeff());
+    whole_colors_ = whole_colors_ && color_.back() == Color(color_.back().array().floor());
   }
 
   // Row from 0 of an index that counts from 1, or backwards from the last row so far.
@@ -164,6 +172,11 @@ class ObjReader {
           a.normal[t][k] = has_normal ? normal_[corner.normal]
                                       : face_normal(mesh_.vertices[p], mesh_.vertices[q], mesh_.vertices[r]);
       }
+    const bool bytes = whole_colors_ && brightest_ > 1 && brightest_ <= 255;  // not numbers from 0 to 1
+    for (Color& c : color_) {
+      if (bytes) c.head<3>() /= 255;
+      if (!c.allFinite()) c = Color::Ones();
+    }
     if (colored_) a.color = at_corners(mesh_, color_);
     if (any_material_)
       a.group = std::move(material_of_), a.group_names = std::move(materials_.all);
@@ -175,6 +188,8 @@ class ObjReader {
   const std::string& name_;
   std::vector<std::string>& notes_;
   std::size_t polylines_ = 0, points_ = 0, curved_ = 0;  // lines that are left out
+  double brightest_ = 0;                                 // the greatest number of a colour
+  bool whole_colors_ = true;                             // whether all numbers of colours are integers
   bool weighted_ = false;                                // whether a fourth coordinate is not 1
   std::vector<std::string_view> words_;
   TriangleMesh mesh_;

@@ -179,6 +179,7 @@ TEST_CASE("vertices with a skin stand where their joints place them", "[gltf]") 
   b.json["nodes"].push_back({{"translation", {0, 0, 10}}});
   b.json["scenes"][0]["nodes"] = {0, 1};
   const TriangleMesh moved = b.read().mesh;
+  CHECK(b.read().notes == std::vector<std::string>{"left out: 1 skin (applied)"});
   CHECK(bounding_box(moved).lo.isApprox(Vec3(0, 5, 0)));
   CHECK(bounding_box(moved).hi.isApprox(Vec3(1, 6, 4)));  // (0, 0, 1), half way between + 0 and + 6
   b.json["scenes"][0]["nodes"] = {0};
@@ -212,8 +213,10 @@ TEST_CASE("strips, fans, sparse accessors and morph weights", "[gltf]") {
   const std::size_t change = morph.add<float>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 4}, 5126, "VEC3", 4);
   morph.primitive()["targets"] = {{{"POSITION", change}}};
   CHECK(signed_volume(morph.read().mesh) == Approx(1.0 / 6));
+  CHECK(morph.read().notes == std::vector<std::string>{"left out: 1 morph target without weight"});
   morph.json["meshes"][0]["weights"] = {0.5};
   CHECK(signed_volume(morph.read().mesh) == Approx(3.0 / 6));
+  CHECK(morph.read().notes.empty());
 }
 
 TEST_CASE("an extension that is not known is named, compressed files before anything else", "[gltf]") {

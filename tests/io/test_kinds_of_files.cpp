@@ -243,6 +243,9 @@ TEST_CASE("OBJ: fourth coordinates, colours, old keywords, lines and points, a l
     check_tetrahedron(file.mesh);
     CHECK(file.notes.empty());
   }
+  const auto color =
+      read("v 0 0 0 0 0 0\nv 1 0 0 255 51 0\nv 0 1 0 0 0 255\nv 0 0 1 0 0 0\n" + f).mesh.attributes.color;
+  CHECK(color[0][2] == Color(1, 0.2, 0, 1));  // of vertex 2
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
   CHECK(read(v + f + "l 1 2 3\nl 2 3\np 4\n").notes ==
         std::vector<std::string>{"left out: 1 line of points, 2 polylines"});

@@ -280,6 +280,9 @@ END
   said "far.glb: the model is far from the origin; the root node moves the pieces by (6.912e+05, 5.401e+06, 512.8)" kerf-pieces far.stl -o far.glb
   [ "$(size far.glb)" = "; 1 × 1 × 1" ] || fail "far.glb: $(size far.glb)"
   said "far.usda: the model is far from the origin" kerf-pieces far.stl --unit m -o far.usda
+  printf '[body]\nmesh = "far.stl"\nspacing = 0.3\n[time]\nframes = 1\n' >far.toml
+  kerf-sim far.toml -o far-run 2>&1 | grep -q 'the root of run.usda moves them by (6.912e+05, 5.401e+06, 512.8)' || fail "kerf-sim says nothing of an offset"
+  grep -q 'double3 xformOp:translate = (691235' far-run/run.usda || fail "run.usda has no offset"
   ;;
 scores)
   kerf-model block --edge 0.25 -o block.ply

@@ -13,7 +13,7 @@ namespace {
 struct Command {
   std::string model, steps, repro;
   std::vector<std::string> fronts, sheets;
-  double max_move = 0, remesh = 0, jagged = 0, bumps = 8, decimate = 0;
+  double max_move = 0, remesh = 0, jagged = 0, bumps = 8, decimate = 0, unit = 0;
   std::size_t from = 0, to = ~std::size_t(0);
   bool repair = false;
 };
@@ -50,6 +50,7 @@ class Cutting {
         complex_(tool::complex_of(file_, w_.model)),
         states_(file_.fronts) {
     options_.seed = t.seed;
+    if (w_.unit > 0) file_.mesh.unit = w_.unit;
   }
 
   void decimate() {
@@ -119,6 +120,7 @@ class Cutting {
 
   void write(const std::string& target) const {
     const auto mesh = cut_surface();
+    if (target.ends_with(".obj")) tool::say_left_out_of_obj(mesh, target, t_);
     geo::write_all(target, [&](std::ostream& out) {
       target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states_, "kerf-crack");
     });
@@ -250,6 +252,7 @@ int main(int argc, char** argv) {
   t.option("--bumps", w.bumps, "How many of the largest bumps fit along the diagonal");
   t.option("--decimate", w.decimate, "First, drop vertices whose surface stays within this fraction of the diagonal");
   t.flag("--repair", w.repair, "Repair the model first, as kerf-repair does");
+  t.unit_option(w.unit, "Unit of the model's coordinates, which the output states: m, cm, mm, in, ft ...");
   t.output_option("--repro", w.repro, "Where to write model and front when a step fails");
   t.output("The cut surface (PLY with patch and site; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {
@@ -264,7 +267,7 @@ int main(int argc, char** argv) {
     cutting.decimate();
     cutting.sweep(fronts);
     for (const auto& path : w.sheets) {
-      const auto sheet = geo::read_surface(path).mesh;
+      const auto sheet = tool::read_surface(path).mesh;
       cutting.insert(path, sheet.vertices, sheet.triangles);
     }
     cutting.roughen();

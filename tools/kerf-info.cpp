@@ -76,7 +76,7 @@ std::string report_other(const Command& c, const std::string& path, const std::s
   if (kind == tool::Kind::nodes) return info::report_nodes(geo::parse_nodes(bytes, path), c.options, report);
   if (kind == tool::Kind::fronts)
     return info::report_fronts(geo::parse_fronts(bytes, path), c.options, report), std::string();
-  const auto file = geo::parse_surface(bytes, path);
+  const auto file = tool::parse_surface(bytes, path);
   if (c.vertex < 0) return info::report_surface(file, c.options, report);
   info::ask_vertex(file.mesh, static_cast<std::size_t>(c.vertex), report);
   return {};

@@ -20,7 +20,7 @@ struct Command {
   std::string model, bonds, up = "y", physics = "none", names;
   bool obj = false, hulls = false, repair = false;
   int hull_corners = 64, hull_parts = 1, levels = 1;
-  double tile = 0.25, strength = 1, density = 1000, least = 0;
+  double tile = 0.25, strength = 1, density = 1000, least = 0, unit = 0;
 };
 
 void check(const Command& w, const std::string& output) {
@@ -88,7 +88,8 @@ void write_folder(fs::path folder, const Command& w, const std::vector<geo::Chun
   if (!fs::create_directories(aside, error))
     throw geo::OutputError(folder.string() + ": cannot be made (" + error.message() + ")");
   const char* end = w.obj ? ".obj" : ".ply";
-  const auto write = [&](const std::string& name, const geo::TriangleMesh& mesh) {
+  const auto write = [&](const std::string& name, geo::TriangleMesh mesh) {
+    mesh.attributes.library = {};  // images would be in the file of each piece
     geo::write_all((aside / name).string(),
                    [&](std::ostream& out) { w.obj ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh); });
   };
@@ -124,8 +125,28 @@ void write(const std::string& path, const Command& w, const std::vector<geo::Chu
     usd ? geo::write_usd_pieces(out, chunks, bonds, labels, {w.up == "z", static_cast<std::size_t>(w.hull_parts)})
         : geo::write_glb(out, chunks, bonds, labels, glb_options(w));
   });
-  if (!w.bonds.empty())
-    geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, chunks, bonds, labels); });
+  if (w.bonds.empty()) return;
+  const geo::PieceSet set = usd ? geo::PieceSet{chunks, bonds, labels} : geo::in_metres(chunks, bonds, labels);
+  geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, set.chunks, set.bonds, set.labels); });
+}
+
+// Says what is not as in the model: a unit that is assumed, an offset, what the format does not
+// hold.
+void say_assumptions(const tool::Tool& t, const Command& w, const std::vector<geo::Chunk>& chunks) {
+  const std::string& path = t.output_path;
+  const bool usd = path.ends_with(".usda"), glb = path.ends_with(".glb");
+  if (chunks.empty()) return;
+  const geo::TriangleMesh& mesh = chunks[0].mesh;
+  if (mesh.unit == 0 && (usd || w.physics != "none"))
+    t.say("kerf-pieces: " + w.model + ": states no unit; one is taken as a metre, and --unit gives another");
+  if (!glb && mesh.attributes.library.glb)
+    t.say("kerf-pieces: " + path + ": left out: materials but their names, which a .glb keeps");
+  if (!usd && !glb) return;
+  const geo::PieceSet set = glb ? geo::in_metres(chunks, {}, {}) : geo::PieceSet{chunks, {}, {}};
+  const geo::Vec3 offset = geo::single_precision_offset(geo::bounding_box(set.chunks));
+  if (!offset.isZero(0))
+    t.say("kerf-pieces: " + path + ": the model is far from the origin; the root node moves the pieces by (" +
+          tool::rounded(offset) + "); without that, pieces fit in single precision");
 }
 
 // Reports in words or as JSON.
@@ -179,9 +200,10 @@ int main(int argc, char** argv) {
   t.choice("--physics", w.physics, {"none", "omi", "khr"},
            "Of a .glb: rigid bodies and hulls as OMI_physics_body, or as the review draft KHR_physics_rigid_bodies, "
            "which has joints");
-  t.option("--density", w.density, "Mass of a volume of 1, for rigid bodies");
+  t.option("--density", w.density, "Mass of a cubic metre, for rigid bodies");
+  t.unit_option(w.unit, "Unit of the model's coordinates, if its file states none: m, cm, mm, in, ft ...");
   t.option("--tile", w.tile, "Size of one texture tile on inner faces, as a fraction of the model's diagonal");
-  t.option("--strength", w.strength, "Force that an area of 1 withstands; a bond's strength is this times its area");
+  t.option("--strength", w.strength, "Force that a square metre withstands; a bond's strength is this times its area");
   t.choice("--up", w.up, {"y", "z"}, "Of a .glb or .usda: which axis of the model is up");
   t.output_option("--bonds", w.bonds, "Of a .glb or .usda: also write pieces, bonds and clusters to this JSON file");
   t.output("pieces.glb, pieces.usda, or a folder; made when it is not there", {"a folder", ".glb", ".usda"});
@@ -195,11 +217,13 @@ int main(int argc, char** argv) {
     const geo::Complex& complex = subject.complex;
     const geo::Pieces found = geo::find_pieces(complex);
     const auto bonds = geo::find_bonds(complex, found, subject.moved);
-    const auto chunks =
-        geo::make_chunks(complex, found, subject.mesh, w.tile * complex.extent().diagonal(), subject.moved);
+    auto chunks = geo::make_chunks(complex, found, subject.mesh, w.tile * complex.extent().diagonal(), subject.moved);
+    if (w.unit > 0)
+      for (geo::Chunk& chunk : chunks) chunk.mesh.unit = w.unit;
     geo::ChunkLabels labels;
     labels.strength = w.strength, labels.density = w.density;
     labels.levels = geo::make_hierarchy(found.volume, bonds, static_cast<std::size_t>(w.levels));
+    say_assumptions(t, w, chunks);
     write(t.output_path, w, chunks, bonds, labels);
     report(t, w, found.count, bonds.size(), small, labels.levels);
   });

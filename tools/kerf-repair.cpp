@@ -12,7 +12,7 @@ namespace {
 
 struct Command {
   std::string model;
-  double weld = 0, voxel = 0, edge = 0;
+  double weld = 0, voxel = 0, edge = 0, unit = 0;
   bool smooth = false;
 };
 
@@ -80,6 +80,7 @@ int main(int argc, char** argv) {
   t.option("--voxel", w.voxel,
            "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
   t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
+  t.unit_option(w.unit, "Unit of the model's coordinates, which the output states: m, cm, mm, in, ft ...");
   t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
   return t.run(argc, argv, [&] {
     if (!(w.weld >= 0 && w.weld <= 0.1)) throw tool::UsageError("--weld must be from 0 to 0.1");
@@ -88,12 +89,14 @@ int main(int argc, char** argv) {
     if (w.edge != 0 && !(w.edge >= 0.0005 && w.edge <= 1))
       throw tool::UsageError("--edge must be from 0.0005 to 1, or 0");
     const std::string target = t.target(true);
-    geo::TriangleMesh mesh = geo::read_surface(w.model).mesh;
+    geo::TriangleMesh mesh = tool::read_surface(w.model).mesh;
+    if (w.unit > 0) mesh.unit = w.unit;
     if (mesh.two_sided())
       throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     const double diagonal = geo::bounding_box(mesh).diagonal();
     geo::SolidRepairStats done;
     mesh = solid_of(w, std::move(mesh), diagonal, done);
+    if (target.ends_with(".obj")) tool::say_left_out_of_obj(mesh, target, t);
     geo::write_all(target, [&](std::ostream& out) {
       target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair");
     });

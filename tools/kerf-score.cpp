@@ -67,7 +67,7 @@ geo::ScoreOptions options_of(const Command& w, std::uint64_t seed) {
         o.pattern.curves.push_back(std::move(curve));
       }
     }
-  for (const auto& path : w.sheets) o.pattern.sheets.push_back(geo::read_surface(path).mesh);
+  for (const auto& path : w.sheets) o.pattern.sheets.push_back(tool::read_surface(path).mesh);
   return o;
 }
 

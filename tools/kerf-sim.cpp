@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <kerf/body_file.h>
+#include <kerf/export.h>
 #include <kerf/files.h>
 #include <kerf/pieces.h>
 #include <kerf/progress.h>
@@ -222,6 +223,10 @@ void simulate(const Command& command, const tool::Tool& t) {
   const geo::Progress progress = t.progress();
   recorded->advance_to(last, progress);
   geo::report(progress, "done", 1, 1);
+  const geo::Vec3 offset = geo::single_precision_offset(geo::bounding_box(setup.models.all));
+  if (!offset.isZero(0))
+    t.say("kerf-sim: the bodies are far from the origin; the root of run.usda moves them by (" + tool::rounded(offset) +
+          ")");
   sim::write_whole_run(folder, last, setup.scene.frame_rate, sim::up_axis(setup.scene.gravity));
   summarise(*recorded, setup, folder, last, t);
   review(*recorded, setup, command.strict, t);

@@ -9,6 +9,7 @@
 #include <kerf/crack.h>
 #include <kerf/error.h>
 #include <kerf/files.h>
+#include "tool.h"
 
 namespace tool {
 
@@ -28,7 +29,7 @@ inline void require_solid(const geo::TriangleMesh& mesh, const std::string& path
 
 /// A surface, checked by require_solid().
 inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string& path) {
-  geo::SurfaceFile file = geo::parse_surface(bytes, path);
+  geo::SurfaceFile file = tool::parse_surface(bytes, path);
   require_solid(file.mesh, path, bytes);
   return file;
 }
@@ -48,7 +49,7 @@ inline void repair_plain(geo::TriangleMesh& mesh, const std::string& path) {
 /// As read_solid(), where `repair` is false. Else a plain surface is repaired first.
 inline geo::SurfaceFile read_solid(const std::string& path, bool repair) {
   if (!repair) return read_solid(path);
-  geo::SurfaceFile file = geo::read_surface(path);
+  geo::SurfaceFile file = tool::read_surface(path);
   repair_plain(file.mesh, path);
   return file;
 }
@@ -59,6 +60,33 @@ inline void require_whole(geo::TriangleMesh& mesh, const std::string& path, cons
   if (std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; }))
     throw geo::InputError(path + ": is cut already; " + advice);
   mesh.patch.clear(), mesh.site.clear();
+}
+
+/// A model for a scene: in metres, and without the materials of a .glb, as each frame would hold
+/// their images. Prints what that changes, and a unit of the file that `scale` leaves out.
+inline void for_scene(geo::TriangleMesh& mesh, const std::string& path, double scale) {
+  geo::SurfaceFile about;
+  if (mesh.attributes.library.glb)
+    about.notes.push_back("left out: materials but their names, which frames of a run do not hold");
+  if (mesh.unit > 0 && mesh.unit != 1 && scale == 1)
+    about.notes.push_back("states a unit of " + number(mesh.unit) +
+                          " m, but a scene is in metres; give the body scale = " + number(mesh.unit));
+  say_notes(about, path);
+  mesh.attributes.library = {};
+  mesh.unit = mesh.unit > 0 ? 1 : 0;
+}
+
+/// Says what an OBJ file cannot hold of a surface: materials of a .glb, second texture coordinates,
+/// a unit.
+inline void say_left_out_of_obj(const geo::TriangleMesh& mesh, const std::string& path, const Tool& t) {
+  std::string things;
+  const auto add = [&](bool has, const char* what) {
+    if (has) things += (things.empty() ? "" : ", ") + std::string(what);
+  };
+  add(mesh.attributes.library.glb != nullptr, "materials but their names");
+  add(!mesh.attributes.uv2.empty(), "second texture coordinates");
+  add(mesh.unit > 0 && mesh.unit != 1, "the unit");
+  if (!things.empty()) t.say(t.name() + ": " + path + ": left out: " + things + "; a .ply keeps them");
 }
 
 /// The complex of a surface from a file. Errors begin with the file's name.

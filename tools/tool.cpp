@@ -32,7 +32,8 @@ namespace tool {
 namespace {
 
 std::atomic<bool> interrupted{false}, bar_shown{false};
-constexpr int closed_pipe = 141;  // as shells report programs that SIGPIPE ends
+std::atomic<const Tool*> running{nullptr};  // the program's tool, which prints notes
+constexpr int closed_pipe = 141;            // as shells report programs that SIGPIPE ends
 
 // Removes the bar, so that the next text begins a line.
 void clear_bar() {
@@ -209,7 +210,18 @@ void Tool::output(const std::string& help, std::vector<std::string> endings) {
   endings_ = std::move(endings);
 }
 
+void Tool::unit_option(double& metres, const std::string& help) {
+  parser_->app
+      .add_option_function<std::string>(
+          "--unit", [&metres](const std::string& name) { metres = geo::length_unit(name).value_or(0); }, help)
+      ->check([](const std::string& name) {
+        return geo::length_unit(name) ? std::string()
+                                      : "'" + name + "' is no unit of length; give one of " + geo::length_unit_names();
+      });
+}
+
 int Tool::run(int argc, char** argv, const std::function<void()>& work) {
+  running = this;
   try {
     if (argc == 3 && std::string_view(argv[1]) == "--describe") {
       std::cout << describe(parser_->app, argv[2]);
@@ -314,6 +326,19 @@ void Tool::say(const std::string& line) const {
   clear_bar();
   std::cerr << line << '\n';
 }
+
+void say_notes(const geo::SurfaceFile& file, const std::string& path) {
+  if (const Tool* tool = running)
+    for (const std::string& note : file.notes) tool->say(tool->name() + ": " + path + ": " + note);
+}
+
+geo::SurfaceFile parse_surface(const std::string& bytes, const std::string& path) {
+  geo::SurfaceFile file = geo::parse_surface(bytes, path);
+  say_notes(file, path);
+  return file;
+}
+
+geo::SurfaceFile read_surface(const std::string& path) { return parse_surface(geo::read_all(path), path); }
 
 std::string named_hash(const std::string& path, std::uint64_t fingerprint) {
   char hash[24];

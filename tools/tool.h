@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <kerf/files.h>
 #include <kerf/progress.h>
 #include <kerf/vec.h>
 
@@ -41,6 +42,9 @@ class Tool {
   void choice(const std::string& names, std::string& value, const std::vector<std::string>& choices,
               const std::string& help);
   void flag(const std::string& names, bool& value, const std::string& help);
+  /// --unit: the unit of length of the model's coordinates; `metres` becomes that of one unit, and
+  /// stays 0 where the option is not given.
+  void unit_option(double& metres, const std::string& help);
   /// For the name of a file or folder to be written. An empty one, as of a shell variable that is
   /// not set, is refused.
   void output_option(const std::string& names, std::string& path, const std::string& help);
@@ -69,6 +73,8 @@ class Tool {
   geo::Progress progress() const;
   /// Whether the work is to go on: there was no Ctrl-C.
   static bool goes_on();
+  /// The program's name.
+  const std::string& name() const { return name_; }
   /// Prints a line to standard error unless -q is given.
   void say(const std::string& line) const;
 
@@ -79,6 +85,14 @@ class Tool {
   std::vector<std::string> endings_;
   int threads_ = 0;
 };
+
+/// Prints what a reader left out or assumed, a line for each note, as Tool::say() of the program's
+/// tool.
+void say_notes(const geo::SurfaceFile& file, const std::string& path);
+/// Reads a surface as geo::parse_surface(), and prints its notes.
+geo::SurfaceFile parse_surface(const std::string& bytes, const std::string& path);
+/// Reads a surface as geo::read_surface(), and prints its notes.
+geo::SurfaceFile read_surface(const std::string& path);
 
 /// "name xxh3:…" of an input, for the history of a file. The name is without its folder, so moving
 /// files does not change the bytes.

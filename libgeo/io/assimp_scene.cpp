@@ -9,6 +9,7 @@
 #include <assimp/scene.h>
 #include <dlfcn.h>
 
+#include <cstring>
 #include <map>
 
 #include "io/assimp_files.h"
@@ -54,6 +55,9 @@ const Library& library() {
 
 using Transform = Eigen::Matrix<double, 3, 4>;
 
+// Where the transform of a scene's root comes from.
+enum class RootTransform { of_file, of_assimp };
+
 Transform transform_of(const aiMatrix4x4& m) {
   Transform result;
   result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
@@ -69,11 +73,6 @@ Transform after(const Transform& outer, const Transform& inner) {
 
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-double srgb(double c) {  // IEC 61966-2-1, from a linear value
-  c = std::clamp(c, 0.0, 1.0);
-  return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-}
-
 // Whether engines (Unreal, Godot) take a node of this name for a collision shape.
 bool is_hull(std::string_view name) {
   for (const char* beginning : {"UCX_", "UBX_", "USP_", "UCP_"})
@@ -84,8 +83,8 @@ bool is_hull(std::string_view name) {
 // Adds the meshes of a scene to one mesh, as its nodes place them.
 class Collector {
  public:
-  Collector(const aiScene& scene, const std::string& name, bool linear_colors)
-      : scene_(scene), where_(name + ": "), linear_(linear_colors) {
+  Collector(const aiScene& scene, const std::string& name, RootTransform root)
+      : scene_(scene), where_(name + ": "), root_(root) {
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
       const aiMesh& mesh = *scene.mMeshes[i];
       uv_ = uv_ || mesh.HasTextureCoords(0);
@@ -94,11 +93,37 @@ class Collector {
     }
   }
 
-  TriangleMesh collect() {
-    struct Visit {
-      const aiNode* node;
-      Transform transform;
-    };
+  SurfaceFile collect() {
+    place_nodes();
+    for (const Visit& visit : visits_) {
+      const bool hull = is_hull(visit.node->mName.C_Str());
+      for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
+        const aiMesh& mesh = *scene_.mMeshes[visit.node->mMeshes[i]];
+        if (hull)
+          ++hulls_;
+        else
+          add(mesh, visit.transform);
+      }
+    }
+    // A scene without materials has one of assimp's, with its name or without.
+    if (const auto& names = mesh_.attributes.group_names;
+        names.size() == 1 && (names[0] == AI_DEFAULT_MATERIAL_NAME || names[0] == "default"))
+      mesh_.attributes.group.clear(), mesh_.attributes.group_names.clear();
+    SurfaceFile file;
+    add_notes(file.notes);
+    read_unit();
+    file.mesh = std::move(mesh_);
+    return file;
+  }
+
+ private:
+  struct Visit {
+    const aiNode* node;
+    Transform transform;
+  };
+
+  // Finds the place of each node, from the root down.
+  void place_nodes() {
     Transform same = Transform::Zero();
     same.leftCols<3>().setIdentity();
     std::vector<Visit> open;
@@ -106,19 +131,83 @@ class Collector {
     while (!open.empty()) {
       const auto [node, outer] = open.back();
       open.pop_back();
-      const Transform own = after(outer, transform_of(node->mTransformation));
-      for (unsigned i = 0; i < node->mNumMeshes && !is_hull(node->mName.C_Str()); ++i)
-        add(*scene_.mMeshes[node->mMeshes[i]], own);
+      const bool ignored = node == scene_.mRootNode && root_ == RootTransform::of_assimp;
+      const Transform own = ignored ? same : after(outer, transform_of(node->mTransformation));
+      visits_.push_back({node, own});
+      places_.try_emplace(node->mName.C_Str(), own);
       for (unsigned i = node->mNumChildren; i > 0; --i) open.push_back({node->mChildren[i - 1], own});
     }
-    // A scene without materials has one of assimp's, with its name or without.
-    if (const auto& names = mesh_.attributes.group_names;
-        names.size() == 1 && (names[0] == AI_DEFAULT_MATERIAL_NAME || names[0] == "default"))
-      mesh_.attributes.group.clear(), mesh_.attributes.group_names.clear();
-    return std::move(mesh_);
   }
 
- private:
+  // FBX says how many centimetres its unit is.
+  void read_unit() {
+    double centimetres = 0;
+    float single = 0;
+    const aiMetadata* about = scene_.mMetaData;
+    for (unsigned i = 0; about && i < about->mNumProperties; ++i) {
+      if (std::string_view(about->mKeys[i].C_Str()) != "UnitScaleFactor") continue;
+      const aiMetadataEntry& entry = about->mValues[i];
+      if (entry.mType == AI_DOUBLE) std::memcpy(&centimetres, entry.mData, sizeof centimetres);
+      if (entry.mType == AI_FLOAT) {
+        std::memcpy(&single, entry.mData, sizeof single);
+        centimetres = single;
+      }
+    }
+    constexpr double metres_of_centimetre = 0.01;
+    if (centimetres > 0 && std::isfinite(centimetres)) mesh_.unit = metres_of_centimetre * centimetres;
+  }
+
+  bool has_textures() const {
+    for (unsigned i = 0; i < scene_.mNumMaterials; ++i)
+      for (unsigned k = 0; k < scene_.mMaterials[i]->mNumProperties; ++k)
+        if (std::string_view(scene_.mMaterials[i]->mProperties[k]->mKey.C_Str()) == "$tex.file") return true;
+    return scene_.mNumTextures > 0;
+  }
+
+  void add_notes(std::vector<std::string>& notes) const {
+    std::vector<std::string> things;
+    const auto add = [&](std::size_t n, const std::string& noun) {
+      if (n > 0) things.push_back(counted(n, noun));
+    };
+    if (has_textures()) things.push_back("textures");
+    add(scene_.mNumCameras, "camera");
+    add(scene_.mNumLights, "light");
+    add(scene_.mNumAnimations, "animation");
+    if (skinned_) things.push_back("skins (applied)");
+    add(hulls_, "collision shape");
+    if (thin_faces_ > 0) things.push_back(counted(thin_faces_, "point or line", "points and lines"));
+    if (second_uv_) things.push_back("further texture coordinates");
+    if (second_color_) things.push_back("further colours");
+    add_left_out(notes, things);
+    if (unplaced_) notes.push_back("a skin has bones without nodes; its vertices stay where their node places them");
+  }
+
+  // The transform of each vertex of a mesh with bones: the weighted mean of what its bones do.
+  // Empty without bones.
+  std::vector<Transform> bone_places(const aiMesh& mesh, const Transform& node) {
+    std::vector<Transform> sum;
+    if (mesh.mNumBones == 0) return sum;
+    sum.assign(mesh.mNumVertices, Transform::Zero());
+    std::vector<double> weights(mesh.mNumVertices, 0);
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      const aiBone& bone = *mesh.mBones[b];
+      const auto place = places_.find(bone.mName.C_Str());
+      if (place == places_.end()) {
+        unplaced_ = true;
+        return {};
+      }
+      const Transform own = after(place->second, transform_of(bone.mOffsetMatrix));
+      for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+        const auto& [v, weight] = bone.mWeights[w];
+        if (v >= mesh.mNumVertices || !(weight > 0)) continue;
+        sum[v] += weight * own;
+        weights[v] += weight;
+      }
+    }
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) sum[v] = weights[v] > 0 ? Transform(sum[v] / weights[v]) : node;
+    return sum;
+  }
+
   std::int32_t group_of(const aiMesh& mesh) {
     aiString text;
     std::string name;
@@ -132,7 +221,12 @@ class Collector {
     return entry->second;
   }
 
-  void add(const aiMesh& mesh, const Transform& transform) {
+  void add(const aiMesh& mesh, const Transform& node) {
+    const auto bones = bone_places(mesh, node);
+    skinned_ = skinned_ || !bones.empty();
+    const Transform& transform = bones.empty() ? node : bones[0];
+    second_uv_ = second_uv_ || mesh.HasTextureCoords(1);
+    second_color_ = second_color_ || mesh.HasVertexColors(1);
     const Eigen::Matrix3d linear = transform.leftCols<3>();
     // Normals follow the cofactors; a mirrored mesh is turned, so that its outside stays outside.
     Eigen::Matrix3d cofactors;
@@ -143,12 +237,18 @@ class Collector {
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const Vec3 at = vector_of(mesh.mVertices[v]);
-      mesh_.vertices.push_back(moved ? Vec3(linear * at + transform.col(3)) : at);
+      if (!bones.empty())
+        mesh_.vertices.push_back(bones[v].leftCols<3>() * at + bones[v].col(3));
+      else
+        mesh_.vertices.push_back(moved ? Vec3(linear * at + transform.col(3)) : at);
     }
     const std::int32_t group = group_of(mesh);
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices < 3) continue;  // a point or a line
+      if (face.mNumIndices < 3) {
+        ++thin_faces_;
+        continue;
+      }
       std::vector<std::uint32_t> polygon(face.mIndices, face.mIndices + face.mNumIndices);
       if (mirrored) std::reverse(polygon.begin(), polygon.end());
       for (std::uint32_t& v : polygon) {
@@ -179,7 +279,7 @@ class Collector {
       color[k].setOnes();
       if (mesh.HasVertexColors(0)) {
         const aiColor4D& c = mesh.mColors[0][v];
-        color[k] = linear_ ? Color(srgb(c.r), srgb(c.g), srgb(c.b), c.a) : Color(c.r, c.g, c.b, c.a);
+        color[k] = Color(c.r, c.g, c.b, c.a);
       }
       if (!color[k].allFinite()) color[k].setOnes();
     }
@@ -191,7 +291,11 @@ class Collector {
 
   const aiScene& scene_;
   const std::string where_;
-  const bool linear_;
+  const RootTransform root_;
+  std::vector<Visit> visits_;
+  std::map<std::string, Transform, std::less<>> places_;  // of nodes by name
+  std::size_t hulls_ = 0, thin_faces_ = 0;                // that are left out
+  bool second_uv_ = false, second_color_ = false, unplaced_ = false, skinned_ = false;
   bool uv_ = false, normal_ = false, color_ = false;  // whether some mesh has them
   TriangleMesh mesh_;
   std::map<std::string, std::int32_t> groups_;
@@ -208,7 +312,7 @@ void load_assimp() {
     throw InputError(std::string("needs the library ") + KERF_ASSIMP + " (Debian's libassimp5); install it");
 }
 
-TriangleMesh assimp_mesh(const std::string& bytes, const std::string& name, const std::string& ending) {
+SurfaceFile assimp_surface(const std::string& bytes, const std::string& name, const std::string& ending) {
   AssimpFiles files(bytes, name, ending);
   aiPropertyStore* settings = library().create_settings();
   library().set(settings, AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);  // a skeleton is no surface
@@ -218,7 +322,10 @@ TriangleMesh assimp_mesh(const std::string& bytes, const std::string& name, cons
     if (const auto at = text.find(files.path()); at != text.npos) text.replace(at, files.path().size(), name);
     throw InputError(name + ": assimp cannot read it: " + shown(text, 200));
   }
-  return Collector(*scene, name, ending == "glb" || ending == "gltf").collect();
+  // The roots of these formats have no transform of their own. assimp gives them one that turns and
+  // scales the scene.
+  const bool added = ending == "dae" || ending == "zae" || ending == "fbx";
+  return Collector(*scene, name, added ? RootTransform::of_assimp : RootTransform::of_file).collect();
 }
 
 }  // namespace geo

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "kerf/mesh.h"
+#include "kerf/files.h"
 
 namespace geo {
 
@@ -15,6 +15,6 @@ bool assimp_reads(const std::string& ending);
 /// Reads bytes of the format that `ending` stands for. `name`: of the file, whose folder holds what
 /// it names. To be called in a child process: damaged files crash assimp. Throws InputError with
 /// what assimp says. Precondition: load_assimp() has returned.
-TriangleMesh assimp_mesh(const std::string& bytes, const std::string& name, const std::string& ending);
+SurfaceFile assimp_surface(const std::string& bytes, const std::string& name, const std::string& ending);
 
 }  // namespace geo

@@ -6,6 +6,7 @@
 
 #include "io/glb_file.h"
 #include "io/glb_physics.h"
+#include "io/gltf_materials.h"
 #include "io/piece_json.h"
 #include "kerf/error.h"
 #include "kerf/export.h"
@@ -26,12 +27,12 @@ Json primitive(GlbFile& glb, const Chunk& chunk, const std::vector<std::array<Ve
   const TriangleMesh& mesh = chunk.mesh;
   const Attributes& a = mesh.attributes;
   struct Corner {
-    std::array<float, 8> at;  // position, normal, uv
+    std::array<float, 10> at;  // position, normal, uv, second uv
     std::array<std::uint16_t, 4> color;
     auto operator<=>(const Corner&) const = default;
   };
   std::map<Corner, std::uint32_t> rows;
-  std::vector<float> position, normal, uv;
+  std::vector<float> position, normal, uv, uv2;
   std::vector<std::uint16_t> color;
   std::vector<std::uint32_t> index;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -42,6 +43,10 @@ Json primitive(GlbFile& glb, const Chunk& chunk, const std::vector<std::array<Ve
       for (int i = 0; i < 3; ++i)
         corner.at[std::size_t(i)] = float(p[i]), corner.at[std::size_t(3 + i)] = float(normals[t][k][i]);
       corner.at[6] = float(a.uv[t][k].x()), corner.at[7] = float(1 - a.uv[t][k].y());  // in glTF v points downwards
+      if (!a.uv2.empty()) {
+        corner.at[8] = float(a.uv2[t][k].x());
+        corner.at[9] = float(1 - a.uv2[t][k].y());
+      }
       if (!a.color.empty())
         for (int i = 0; i < 4; ++i)
           corner.color[std::size_t(i)] = static_cast<std::uint16_t>(
@@ -51,13 +56,15 @@ Json primitive(GlbFile& glb, const Chunk& chunk, const std::vector<std::array<Ve
       if (!fresh) continue;
       position.insert(position.end(), corner.at.begin(), corner.at.begin() + 3);
       normal.insert(normal.end(), corner.at.begin() + 3, corner.at.begin() + 6);
-      uv.insert(uv.end(), corner.at.begin() + 6, corner.at.end());
+      uv.insert(uv.end(), corner.at.begin() + 6, corner.at.begin() + 8);
+      uv2.insert(uv2.end(), corner.at.begin() + 8, corner.at.end());
       color.insert(color.end(), corner.color.begin(), corner.color.end());
     }
   }
   Json attributes = {{"POSITION", glb.positions(position)},
                      {"NORMAL", glb.accessor(normal, 5126, "VEC3", rows.size())},
                      {"TEXCOORD_0", glb.accessor(uv, 5126, "VEC2", rows.size())}};
+  if (!a.uv2.empty()) attributes["TEXCOORD_1"] = glb.accessor(uv2, 5126, "VEC2", rows.size());
   if (!a.color.empty()) {
     attributes["COLOR_0"] = glb.accessor(color, 5123, "VEC4", rows.size());
     glb.json["accessors"].back()["normalized"] = true;
@@ -97,10 +104,13 @@ class GlbScene {
         labels_(labels),
         options_(options),
         physics_(glb_, options.physics),
+        offset_(single_precision_offset(bounding_box(chunks))),
         centroids_(cluster_centroids(chunks, labels.levels)),
         attachments_(chunks.size()) {}
 
   void write(std::ostream& out) {
+    for (const Chunk& chunk : chunks_)
+      if (const auto& library = chunk.mesh.attributes.library.glb; library && materials_.empty()) add_library(*library);
     if (physics_.has_joints()) add_joints();
     std::vector<std::size_t> nodes;
     for (std::size_t p = 0; p < chunks_.size(); ++p) nodes.push_back(piece_node(p));
@@ -109,6 +119,9 @@ class GlbScene {
     // Quaternion (x, y, z, w) of −90° about x, which turns z upwards to y.
     const double half = std::sqrt(0.5);
     if (options_.z_up) root["rotation"] = Json::array({-half, 0.0, 0.0, half});
+    // The rotation acts before the translation.
+    const Vec3 moved = options_.z_up ? Vec3(offset_.x(), offset_.z(), -offset_.y()) : offset_;
+    if (!offset_.isZero(0)) root["translation"] = json_row(moved);
     const std::size_t top = glb_.node(std::move(root));
     glb_.json["scenes"].push_back({{"nodes", Json::array({top})}, {"extras", pieces_json(chunks_, bonds_, labels_)}});
     glb_.write(out);
@@ -117,11 +130,18 @@ class GlbScene {
  private:
   // The origin of the node above a piece (level 0) or above a cluster of a level.
   Vec3 origin_above(std::size_t level, std::size_t which) const {
-    return level < labels_.levels.size() ? centroids_[level][labels_.levels[level].of[which]] : Vec3(Vec3::Zero());
+    return level < labels_.levels.size() ? centroids_[level][labels_.levels[level].of[which]] : offset_;
+  }
+
+  void add_library(const std::string& library) {
+    const auto names = add_materials(glb_, library);
+    for (std::size_t i = 0; i < names.size(); ++i) materials_.try_emplace(names[i], i);
+    next_material_ = names.size();
   }
 
   std::size_t material(const std::string& name) {
-    const auto [entry, fresh] = materials_.try_emplace(name, materials_.size());
+    const auto [entry, fresh] = materials_.try_emplace(name, next_material_);
+    next_material_ += fresh;
     const Json color = name == crack_group ? Json::array({0.42, 0.36, 0.31, 1.0}) : Json::array({0.8, 0.8, 0.8, 1.0});
     if (fresh)
       glb_.json["materials"].push_back(
@@ -198,6 +218,8 @@ class GlbScene {
   GlbFile glb_;
   GlbExtensions physics_;
   std::map<std::string, std::size_t> materials_;
+  std::size_t next_material_ = 0;
+  Vec3 offset_;                                        // that the root adds to all coordinates
   std::vector<std::vector<Vec3>> centroids_;           // of clusters, by level
   std::vector<std::vector<std::size_t>> attachments_;  // nodes of joints, by piece
 };
@@ -206,7 +228,10 @@ class GlbScene {
 
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                const ChunkLabels& labels, const GlbOptions& options) {
-  GlbScene(chunks, bonds, labels, options).write(out);
+  const double unit = chunks.empty() ? 0 : chunks[0].mesh.unit;
+  if (unit == 0 || unit == 1) return GlbScene(chunks, bonds, labels, options).write(out);
+  const PieceSet set = in_metres(chunks, bonds, labels);
+  GlbScene(set.chunks, set.bonds, set.labels, options).write(out);
 }
 
 }  // namespace geo

@@ -15,6 +15,12 @@ std::size_t GlbFile::view(const void* values, std::size_t bytes, int target) {
   return json["bufferViews"].size() - 1;
 }
 
+std::size_t GlbFile::bytes(const std::string& content) {
+  const std::size_t at = view(content.data(), content.size(), 0);
+  json["bufferViews"][at].erase("target");
+  return at;
+}
+
 std::size_t GlbFile::positions(const std::vector<float>& values) {
   const std::size_t at = accessor(values, 5126, "VEC3", values.size() / 3);
   std::array<float, 3> lo{values[0], values[1], values[2]}, hi = lo;
@@ -43,10 +49,10 @@ std::size_t GlbFile::mesh(Json primitives, const std::string& name) {
 }
 
 void GlbFile::write(std::ostream& out) {
-  json["buffers"] = Json::array({Json{{"byteLength", bytes_.size()}}});
+  if (!bytes_.empty()) json["buffers"] = Json::array({Json{{"byteLength", bytes_.size()}}});
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');
-  const std::uint64_t total = 12 + 8 + text.size() + 8 + bytes_.size();
+  const std::uint64_t total = 12 + 8 + text.size() + (bytes_.empty() ? 0 : 8 + bytes_.size());
   if (total > 0xffffffffu) throw OutputError("pieces of more than 4 GB do not fit into a .glb; write a folder");
   const auto put = [&](std::uint64_t x) {
     const auto word = static_cast<std::uint32_t>(x);
@@ -56,7 +62,9 @@ void GlbFile::write(std::ostream& out) {
   put(0x46546c67), put(2), put(total);
   put(text.size()), put(0x4e4f534a);
   out << text;
-  put(bytes_.size()), put(0x004e4942);
+  if (bytes_.empty()) return;
+  put(bytes_.size());
+  put(0x004e4942);
   out << bytes_;
 }
 

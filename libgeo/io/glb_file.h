@@ -38,6 +38,8 @@ class GlbFile {
   std::size_t positions(const std::vector<float>& values);
   /// Adds an accessor of indices.
   std::size_t indices(const std::vector<std::uint32_t>& values);
+  /// Adds bytes of an image as a buffer view.
+  std::size_t bytes(const std::string& content);
   /// Adds a node.
   std::size_t node(Json description);
   /// Adds a mesh.

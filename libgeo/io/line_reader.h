@@ -17,13 +17,16 @@ namespace geo {
 class LineReader {
  public:
   /// `comment`: begins a comment up to the end of the line; 0: none does. `continuation`: at the
-  /// end of a line, joins the next line to it; 0: nothing does. `text` must outlive the reader.
-  LineReader(std::string_view text, std::string name, char comment = '#', char continuation = 0)
+  /// end of a line, joins the next line to it; 0: nothing does. `end`: ends a line; 0: as above.
+  /// `text` must outlive the reader.
+  LineReader(std::string_view text, std::string name, char comment = '#', char continuation = 0, char end = 0)
       : text_(text),
         name_(std::move(name)),
         comment_(comment),
         continuation_(continuation),
-        end_(text.find('\n') == std::string_view::npos ? '\r' : '\n') {}
+        end_(end != 0                                    ? end
+             : text.find('\n') == std::string_view::npos ? '\r'
+                                                         : '\n') {}
 
   /// Splits the next line that is not empty into words; false at the end.
   bool next(std::vector<std::string_view>& words) {

@@ -36,6 +36,7 @@ void add(NodeSet& nodes, const double (&v)[6], const std::string& name) {
 
 NodeSet from_ply(const std::string& bytes, const std::string& name) {
   const Ply ply = parse_ply(bytes, name);
+  require_no_rest(ply, name);
   const auto* vertex = ply.find("vertex");
   if (!vertex) throw InputError(name + ": has no vertices");
   const PlyProperty* columns[6];

@@ -22,7 +22,7 @@ Json bond_json(const Bond& bond, double strength) {
           {"strength", strength * bond.area}};
 }
 
-Json levels_json(const std::vector<Chunk>& chunks, const ChunkLabels& labels) {
+Json levels_json(const std::vector<Chunk>& chunks, const ChunkLabels& labels, double unit) {
   const auto centroids = cluster_centroids(chunks, labels.levels);
   Json levels = Json::array();
   for (std::size_t k = 0; k < labels.levels.size(); ++k) {
@@ -33,7 +33,7 @@ Json levels_json(const std::vector<Chunk>& chunks, const ChunkLabels& labels) {
           {{"name", cluster_name(k + 1, c)}, {"volume", level.volume[c]}, {"centroid", json_row(centroids[k][c])}});
       if (k + 1 < labels.levels.size()) clusters.back()["parent"] = labels.levels[k + 1].of[c];
     }
-    for (const Bond& bond : level.bonds) bonds.push_back(bond_json(bond, labels.strength));
+    for (const Bond& bond : level.bonds) bonds.push_back(bond_json(bond, labels.strength * unit * unit));
     levels.push_back({{"clusters", clusters}, {"bonds", bonds}});
   }
   return levels;
@@ -74,12 +74,14 @@ nlohmann::ordered_json pieces_json(const std::vector<Chunk>& chunks, const std::
                       {"triangles", chunks[p].mesh.triangles.size()}});
     if (!labels.levels.empty()) pieces.back()["parent"] = labels.levels[0].of[p];
   }
+  const double stated = chunks.empty() ? 0 : chunks[0].mesh.unit, unit = stated > 0 ? stated : 1;
   for (const Bond& bond : bonds) {
-    held.push_back(bond_json(bond, labels.strength));
-    held.back()["torque"] = labels.strength * bond.section;
+    held.push_back(bond_json(bond, labels.strength * unit * unit));
+    held.back()["torque"] = labels.strength * bond.section * unit * unit * unit;
   }
   Json all = {{"pieces", pieces}, {"bonds", held}};
-  if (!labels.levels.empty()) all["levels"] = levels_json(chunks, labels);
+  if (unit != 1) all["unit"] = unit;
+  if (!labels.levels.empty()) all["levels"] = levels_json(chunks, labels, unit);
   return all;
 }
 

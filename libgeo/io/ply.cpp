@@ -15,16 +15,20 @@ namespace {
 
 char type_of(std::string_view word) {
   static constexpr std::pair<std::string_view, char> types[] = {
-      {"char", 'c'},   {"int8", 'c'},    {"uchar", 'C'},  {"uint8", 'C'},  {"short", 's'}, {"int16", 's'},
-      {"ushort", 'S'}, {"uint16", 'S'},  {"int", 'i'},    {"int32", 'i'},  {"uint", 'I'},  {"uint32", 'I'},
-      {"float", 'f'},  {"float32", 'f'}, {"double", 'd'}, {"float64", 'd'}};
+      {"char", 'c'},    {"int8", 'c'},   {"uchar", 'C'},  {"uint8", 'C'},   {"short", 's'},
+      {"int16", 's'},   {"ushort", 'S'}, {"uint16", 'S'}, {"int", 'i'},     {"int32", 'i'},
+      {"uint", 'I'},    {"uint32", 'I'}, {"float", 'f'},  {"float32", 'f'}, {"double", 'd'},
+      {"float64", 'd'}, {"long", 'l'},   {"int64", 'l'},  {"ulong", 'L'},   {"uint64", 'L'}};
   for (const auto& [name, type] : types)
     if (name == word) return type;
   return 0;
 }
 
 std::size_t size_of(char type) {
-  return type == 'd' ? 8 : type == 'c' || type == 'C' ? 1 : type == 's' || type == 'S' ? 2 : 4;
+  return type == 'd' || type == 'l' || type == 'L' ? 8
+         : type == 'c' || type == 'C'              ? 1
+         : type == 's' || type == 'S'              ? 2
+                                                   : 4;
 }
 
 template <class T>
@@ -50,6 +54,10 @@ double decode(const char* bytes, char type, bool swap) {
       return decode<std::int32_t>(bytes, swap);
     case 'I':
       return decode<std::uint32_t>(bytes, swap);
+    case 'l':
+      return decode<std::int64_t>(bytes, swap);
+    case 'L':
+      return decode<std::uint64_t>(bytes, swap);
     case 'f':
       return decode<float>(bytes, swap);
     default:
@@ -85,6 +93,10 @@ void fill(PlyProperty& p, const char* first, std::size_t apart, std::size_t plac
       return fill<std::int32_t>(p.values, first, apart, places, each, swap);
     case 'I':
       return fill<std::uint32_t>(p.values, first, apart, places, each, swap);
+    case 'l':
+      return fill<std::int64_t>(p.values, first, apart, places, each, swap);
+    case 'L':
+      return fill<std::uint64_t>(p.values, first, apart, places, each, swap);
     case 'f':
       return fill<float>(p.values, first, apart, places, each, swap);
     default:
@@ -151,6 +163,14 @@ namespace {
 
 enum class PlyFormat { ascii, little_endian, big_endian };
 
+// The character that ends the lines of the header: the first one, as binary rows may hold the
+// other.
+char header_end(std::string_view bytes) {
+  const auto at = bytes.find_first_of("\r\n");
+  const bool only_return = at != bytes.npos && bytes[at] == '\r' && bytes.substr(at + 1, 1) != "\n";
+  return only_return ? '\r' : '\n';
+}
+
 PlyFormat format_of(const LineReader& lines, std::string_view word) {
   if (word == "ascii") return PlyFormat::ascii;
   if (word == "binary_little_endian") return PlyFormat::little_endian;
@@ -212,8 +232,10 @@ class RowReader {
     if (ascii() || element.count == 0 || !read_even_rows(bytes_, format_ == PlyFormat::big_endian, at_, element))
       for (std::size_t row = 0; row < element.count; ++row) read_row(element);
   }
-  // True where bytes or lines are left.
-  bool more() { return ascii() ? lines_.next(words_) : at_ != bytes_.size(); }
+  // True where bytes or lines are left. Line ends behind binary rows are nothing.
+  bool more() {
+    return ascii() ? lines_.next(words_) : bytes_.substr(at_).find_first_not_of("\r\n") != std::string_view::npos;
+  }
 
  private:
   bool ascii() const { return format_ == PlyFormat::ascii; }
@@ -232,9 +254,16 @@ class RowReader {
     }
     return value;
   }
+  // The next line that is no comment: some programs write comments between the rows.
+  bool next_line() {
+    do
+      if (!lines_.next(words_)) return false;
+    while (words_[0] == "comment" || words_[0] == "obj_info");
+    return true;
+  }
   void read_row(PlyElement& element) {
     word_ = 0;
-    if (ascii() && !lines_.next(words_)) truncated(element);
+    if (ascii() && !next_line()) truncated(element);
     for (auto& p : element.properties) {
       if (p.count_type == 0) {
         p.values.push_back(next(p.type, element));
@@ -261,7 +290,7 @@ class RowReader {
 Ply parse_ply(std::string_view bytes, const std::string& name) {
   static_assert(std::endian::native == std::endian::little);
   Ply ply;
-  LineReader header(bytes, name, 0);
+  LineReader header(bytes, name, 0, 0, header_end(bytes));
   const PlyFormat format = read_header(header, bytes, name, ply);
   RowReader rows(bytes, header.position(), format, name);
   for (auto& element : ply.elements) {
@@ -269,8 +298,12 @@ Ply parse_ply(std::string_view bytes, const std::string& name) {
       throw InputError(name + ": element '" + shown(element.name) + "' has rows but no properties");
     rows.read(element);
   }
-  if (rows.more()) throw InputError(name + ": has bytes after its last element; the file is damaged");
+  ply.has_rest = rows.more();
   return ply;
+}
+
+void require_no_rest(const Ply& ply, const std::string& name) {
+  if (ply.has_rest) throw InputError(name + ": has bytes after its last element; the file is damaged");
 }
 
 }  // namespace geo

@@ -15,27 +15,15 @@
 namespace geo {
 namespace {
 
+// Whether some of the first lines begin with a keyword that OBJ alone has, and a number or name.
 bool looks_like_obj(const std::string& bytes) {
-  LineReader lines(bytes, "");
+  static constexpr std::string_view keywords[] = {"v", "vn", "vt", "f", "usemtl", "mtllib"};
+  LineReader lines(bytes, "", '#', '\\');
   std::vector<std::string_view> words;
   for (int i = 0; i < 200 && lines.next(words); ++i)
-    if (words[0] == "v" || words[0] == "vn" || words[0] == "f") return true;
+    if (words.size() > 1 && std::find(std::begin(keywords), std::end(keywords), words[0]) != std::end(keywords))
+      return true;
   return false;
-}
-
-bool looks_like_off(const std::string& bytes) {
-  LineReader lines(std::string_view(bytes).substr(0, 4096), "");
-  std::vector<std::string_view> words;
-  // COFF and NOFF add colours and normals to the coordinates; other prefixes change the
-  // coordinates. The keyword is optional: counts of vertices, faces and edges may come first.
-  if (!lines.next(words)) return false;
-  const auto numbers = [&](std::string_view allowed) {
-    return words.size() == 3 && std::all_of(words.begin(), words.end(), [&](std::string_view word) {
-             return word.find_first_not_of(allowed) == std::string_view::npos;
-           });
-  };
-  if (numbers("0123456789")) return lines.next(words) && numbers("0123456789+-.eE");
-  return words[0] == "OFF" || words[0] == "COFF" || words[0] == "NOFF" || words[0] == "CNOFF";
 }
 
 // UTF-16 that begins with its byte order mark, as UTF-8 without it; empty for other bytes. Units
@@ -83,6 +71,13 @@ std::vector<std::array<std::uint32_t, 3>> add_polygon(TriangleMesh& mesh, const 
   return triangles;
 }
 
+void add_left_out(std::vector<std::string>& notes, const std::vector<std::string>& things) {
+  if (things.empty()) return;
+  std::string note = "left out: ";
+  for (std::size_t i = 0; i < things.size(); ++i) note += (i > 0 ? ", " : "") + things[i];
+  notes.push_back(note);
+}
+
 SurfaceFile read_surface(const std::string& path) { return parse_surface(read_all(path), path); }
 
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
@@ -92,18 +87,20 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
       looks_like_obj(text) || looks_like_off(text) || text.rfind("ply", 0) == 0)
     return parse_surface(text, name);
   SurfaceFile file;
-  if (bytes.rfind("ply", 0) == 0)
+  if (is_exact_binary_stl(bytes))  // whatever its header begins with
+    file.mesh = parse_stl(bytes, name, file.notes);
+  else if (bytes.rfind("ply", 0) == 0)
     file = parse_surface_ply(bytes, name);
   else if (looks_like_kerf(bytes))
     throw InputError(name + ": is a body (.kerf); give the surface that it was made of, or that it was cut by");
   else if (const OtherFormat other = other_format(bytes, name); !other.what.empty())
-    file.mesh = parse_other(bytes, name, other);
+    file = parse_other(bytes, name, other);
   else if (looks_like_off(bytes))
-    file.mesh = parse_off(bytes, name);
+    file.mesh = parse_off(bytes, name, file.notes);
   else if (looks_like_obj(bytes))
-    file.mesh = parse_obj(bytes, name);
+    file.mesh = parse_obj(bytes, name, file.notes);
   else
-    file.mesh = parse_stl(bytes, name);
+    file.mesh = parse_stl(bytes, name, file.notes);
   for (std::size_t v = 0; v < file.mesh.vertices.size(); ++v)
     if (!in_range(file.mesh.vertices[v]))
       throw InputError(name + ": vertex " + std::to_string(v) +

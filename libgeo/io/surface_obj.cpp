@@ -1,6 +1,7 @@
 // parse_obj() of io/surface_formats.h, write_obj() of kerf/files.h. Wavefront OBJ: texture
 // coordinates, normals, colours of vertices, materials or groups.
 #include <bit>
+#include <limits>
 #include <map>
 
 #include "io/line_reader.h"
@@ -31,12 +32,14 @@ std::string rest_of(const std::vector<std::string_view>& words) {
 
 class ObjReader {
  public:
-  ObjReader(const std::string& bytes, const std::string& name) : lines_(bytes, name, '#', '\\'), name_(name) {}
+  ObjReader(const std::string& bytes, const std::string& name, std::vector<std::string>& notes)
+      : lines_(bytes, name, '#', '\\'), name_(name), notes_(notes) {}
 
   TriangleMesh read() {
     while (lines_.next(words_)) read_line();
     for (const Face& face : faces_) add_triangles(face);
     add_attributes();
+    add_notes();
     return std::move(mesh_);
   }
 
@@ -66,19 +69,43 @@ class ObjReader {
       part_ = rest_of(words_), any_part_ = true;
     } else if (words_[0] == "mtllib") {
       mesh_.attributes.materials = rest_of(words_);
-    } else if (words_[0] == "f") {
+    } else if (words_[0] == "f" || words_[0] == "fo") {  // fo: of old versions
       read_face();
+    } else if (words_[0] == "l") {
+      ++polylines_;
+    } else if (words_[0] == "p") {
+      ++points_;
+    } else if (words_[0] == "curv" || words_[0] == "curv2" || words_[0] == "surf") {
+      ++curved_;
     }
   }
+
+  void add_notes() {
+    std::vector<std::string> things;
+    if (points_ > 0) things.push_back(counted(points_, "line") + " of points");
+    if (polylines_ > 0) things.push_back(counted(polylines_, "polyline"));
+    if (curved_ > 0) things.push_back(counted(curved_, "curve or curved surface", "curves and curved surfaces"));
+    add_left_out(notes_, things);
+    // The specification gives the fourth coordinate a meaning for curves alone.
+    if (weighted_) notes_.push_back("the fourth coordinates of its vertices are weights of curves and have no effect");
+  }
+
+  // Stands for a colour that is missing or not finite, and becomes white.
+  static Color no_color() { return Color::Constant(std::numeric_limits<double>::quiet_NaN()); }
 
   void read_vertex() {
     if (words_.size() < 4) lines_.fail("a vertex needs three coordinates");
     mesh_.vertices.push_back({lines_.real(words_[1]), lines_.real(words_[2]), lines_.real(words_[3])});
-    color_.push_back(Color::Ones());
+    color_.push_back(no_color());
+    weighted_ = weighted_ || (words_.size() == 5 && lines_.any_real(words_[4]) != 1);
     if (words_.size() != 7) return;
     colored_ = true;
     for (int k = 0; k < 3; ++k) color_.back()[k] = lines_.any_real(words_[4 + static_cast<std::size_t>(k)]);
-    if (!color_.back().allFinite()) color_.back() = Color::Ones();
+    color_.back()[3] = 1;
+    if (!color_.back().allFinite()) color_.back() = no_color();
+    if (!color_.back().allFinite()) return;
+    brightest_ = std::max(brightest_, color_.back().head<3>().maxCoeff());
+    whole_colors_ = whole_colors_ && color_.back() == Color(color_.back().array().floor());
   }
 
   // Row from 0 of an index that counts from 1, or backwards from the last row so far.
@@ -145,6 +172,11 @@ class ObjReader {
           a.normal[t][k] = has_normal ? normal_[corner.normal]
                                       : face_normal(mesh_.vertices[p], mesh_.vertices[q], mesh_.vertices[r]);
       }
+    const bool bytes = whole_colors_ && brightest_ > 1 && brightest_ <= 255;  // not numbers from 0 to 1
+    for (Color& c : color_) {
+      if (bytes) c.head<3>() /= 255;
+      if (!c.allFinite()) c = Color::Ones();
+    }
     if (colored_) a.color = at_corners(mesh_, color_);
     if (any_material_)
       a.group = std::move(material_of_), a.group_names = std::move(materials_.all);
@@ -154,6 +186,11 @@ class ObjReader {
 
   LineReader lines_;
   const std::string& name_;
+  std::vector<std::string>& notes_;
+  std::size_t polylines_ = 0, points_ = 0, curved_ = 0;  // lines that are left out
+  double brightest_ = 0;                                 // the greatest number of a colour
+  bool whole_colors_ = true;                             // whether all numbers of colours are integers
+  bool weighted_ = false;                                // whether a fourth coordinate is not 1
   std::vector<std::string_view> words_;
   TriangleMesh mesh_;
   std::vector<Vec2> uv_;
@@ -172,7 +209,9 @@ class ObjReader {
 
 }  // namespace
 
-TriangleMesh parse_obj(const std::string& bytes, const std::string& name) { return ObjReader(bytes, name).read(); }
+TriangleMesh parse_obj(const std::string& bytes, const std::string& name, std::vector<std::string>& notes) {
+  return ObjReader(bytes, name, notes).read();
+}
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "kerf/mesh.h"
+#include "kerf/files.h"
 
 namespace geo {
 
@@ -18,11 +18,12 @@ struct OtherFormat {
 /// `what` is empty where it is none of these.
 OtherFormat other_format(const std::string& bytes, const std::string& name);
 
-/// Reads all meshes of such a file as one, where their nodes place them. Material names become
-/// groups, colours sRGB. Polygons become triangles as in add_polygon(). Left out are points, lines,
-/// collision shapes (UCX_, -convcolonly), skins and animations. Lengths are the file's. Other files
-/// that it names are looked for in the folder of `name` and below. A child process reads, so
-/// that a damaged file can do no harm. Throws InputError, in one line.
-TriangleMesh parse_other(const std::string& bytes, const std::string& name, const OtherFormat& format);
+/// Reads all meshes of such a file as one, where their nodes and bones place them. Material names
+/// become groups, colours sRGB. Polygons become triangles as in add_polygon(). Left out, with a
+/// note, are points, lines, collision shapes (UCX_, -convcolonly) and animations. Coordinates are
+/// the file's, with its unit where it has one. Other files that it names are looked for in the
+/// folder of `name` and below. glTF is read by parse_gltf(), all others in a child process, so that
+/// a damaged file can do no harm. Throws InputError, in one line.
+SurfaceFile parse_other(const std::string& bytes, const std::string& name, const OtherFormat& format);
 
 }  // namespace geo

@@ -57,20 +57,99 @@ class Reader {
  public:
   Reader(const Ply& ply, const std::string& name) : ply_(ply), name_(name) {
     vertex_ = ply.find("vertex"), face_ = ply.find("face");
+    if (const PlyElement* strips = ply.find("tristrips")) read_strips(*strips);
     if (!vertex_ || !face_)
       throw InputError(name + ": has no " + (vertex_ ? "faces; it is not a surface" : "vertices"));
   }
 
   SurfaceFile read() {
     shape();
+    rest();
     attributes();
     groups();
+    unit();
+    library();
     fronts();
     return std::move(file_);
   }
 
  private:
   TriangleMesh& mesh() { return file_.mesh; }
+
+  static const PlyProperty* indices_of(const PlyElement& element) {
+    const PlyProperty* indices = element.find("vertex_indices");
+    if (!indices) indices = element.find("vertex_index");
+    return indices && indices->count_type ? indices : nullptr;
+  }
+
+  // Makes faces of triangle strips, behind the faces that there are. A negative index ends a strip.
+  // Each second triangle has its first two corners exchanged, and one with two equal corners only
+  // joins strips.
+  void read_strips(const PlyElement& strips) {
+    const PlyProperty* from = indices_of(strips);
+    if (!from) throw InputError(name_ + ": its tristrips have no vertex_indices");
+    PlyProperty to{.name = "vertex_indices", .type = 'I', .count_type = 'C', .values = {}, .ends = {}};
+    if (face_) {
+      const PlyProperty* faces = indices_of(*face_);
+      if (!faces) throw InputError(name_ + ": its faces have no vertex_indices");
+      to.values = faces->values;
+      to.ends = faces->ends;
+      if (face_->properties.size() > 1)
+        add_left_out(file_.notes, {"properties of faces, as triangle strips have none"});
+    }
+    for (std::size_t s = 0; s < strips.count; ++s) {
+      std::size_t first = s > 0 ? from->ends[s - 1] : 0;
+      for (std::size_t i = first; i < from->ends[s]; ++i) {
+        if (from->values[i] < 0) {
+          first = i + 1;
+          continue;
+        }
+        if (i < first + 2) continue;
+        const double a = from->values[i - 2], b = from->values[i - 1], c = from->values[i];
+        if (a == b || b == c || c == a) continue;
+        const bool odd = (i - first) % 2 == 1;
+        to.values.insert(to.values.end(), {odd ? b : a, odd ? a : b, c});
+        to.ends.push_back(static_cast<std::uint32_t>(to.values.size()));
+      }
+    }
+    strip_faces_.name = "face";
+    strip_faces_.count = to.ends.size();
+    strip_faces_.properties.push_back(std::move(to));
+    face_ = &strip_faces_;
+  }
+
+  // Notes of what no part of this reader reads.
+  void rest() {
+    static constexpr std::string_view elements[] = {"vertex",     "face",         "tristrips",
+                                                    "kerf_front", "kerf_contact", "kerf_library"};
+    static constexpr std::string_view at_vertices[] = {"x",   "y",     "z",         "nx",        "ny",  "nz",
+                                                       "red", "green", "blue",      "alpha",     "s",   "t",
+                                                       "u",   "v",     "texture_u", "texture_v", "site"};
+    static constexpr std::string_view at_faces[] = {"vertex_indices", "vertex_index", "patch",  "source", "group",
+                                                    "texcoord",       "texcoord2",    "normal", "color",  "red",
+                                                    "green",          "blue",         "alpha"};
+    const auto known = [](const auto& names, std::string_view name) {
+      return std::find(std::begin(names), std::end(names), name) != std::end(names);
+    };
+    std::vector<std::string> things;
+    for (const PlyElement& e : ply_.elements)
+      if (!known(elements, e.name) && e.count > 0) things.push_back("element '" + shown(e.name, 40) + "'");
+    for (const PlyProperty& p : vertex_->properties)
+      if (!known(at_vertices, p.name)) things.push_back("'" + shown(p.name, 40) + "' of vertices");
+    for (const PlyProperty& p : face_->properties)
+      if (!known(at_faces, p.name)) things.push_back("'" + shown(p.name, 40) + "' of faces");
+    constexpr std::size_t most = 8;  // things that a line names
+    for (const std::string& c : ply_.comments)
+      if (c.starts_with("TextureFile ")) things.push_back("texture '" + shown(c.substr(12), 40) + "'");
+    if (things.size() > most) {
+      things.resize(most);
+      things.push_back("and more");
+    }
+    add_left_out(file_.notes, things);
+    if (!ply_.has_rest) return;
+    if (mesh().two_sided()) require_no_rest(ply_, name_);
+    file_.notes.push_back("what follows its last element is left out");
+  }
 
   std::int32_t whole(double x, const char* property) const {
     if (!(std::abs(x) <= 2147483647.0) || x != static_cast<std::int32_t>(x))
@@ -84,9 +163,8 @@ class Reader {
     mesh().vertices = rows_of<Vec3>(xyz, vertex_->count);
     const auto* site = vertex_->find("site");
     patch_ = face_->find("patch");
-    indices_ = face_->find("vertex_indices");
-    if (!indices_) indices_ = face_->find("vertex_index");
-    if (!indices_ || !indices_->count_type) throw InputError(name_ + ": its faces have no vertex_indices");
+    indices_ = indices_of(*face_);
+    if (!indices_) throw InputError(name_ + ": its faces have no vertex_indices");
     if ((site && site->count_type) || (patch_ && patch_->count_type))
       throw InputError(name_ + ": 'site' and 'patch' must not be lists");
     parts_.reserve(face_->count), mesh().triangles.reserve(face_->count);
@@ -167,6 +245,7 @@ class Reader {
     if (uv.empty()) uv = scalars(*vertex_, {"texture_u", "texture_v"});
     const auto at_vertex = colors_of(*vertex_);
     fill<Vec2>(a.uv, "texcoord", {}, rows_of<Vec2>(uv, vertex_->count), [](std::size_t) { return Vec2(Vec2::Zero()); });
+    fill<Vec2>(a.uv2, "texcoord2", {}, {}, [](std::size_t) { return Vec2(Vec2::Zero()); });
     fill<Vec3>(a.normal, "normal", {}, rows_of<Vec3>(scalars(*vertex_, {"nx", "ny", "nz"}), vertex_->count),
                [&](std::size_t t) {
                  const auto& [i, j, k] = mesh().triangles[t];
@@ -209,6 +288,27 @@ class Reader {
     for (const Part& part : parts_) a.group.push_back(static_cast<std::int32_t>(group->values[part.face]));
   }
 
+  // Metres, as a comment.
+  void unit() {
+    constexpr std::string_view key = "kerf_unit ";
+    for (const std::string& c : ply_.comments) {
+      if (!c.starts_with(key)) continue;
+      const LineReader lines(c, name_, 0);
+      mesh().unit = lines.real(std::string_view(c).substr(key.size()));
+      if (!(mesh().unit > 0)) throw InputError(name_ + ": its kerf_unit is not above 0; repair the file");
+    }
+  }
+
+  void library() {
+    const PlyElement* element = ply_.find("kerf_library");
+    const PlyProperty* bytes = element ? element->find("glb") : nullptr;
+    if (!bytes || bytes->type != 'C' || bytes->values.empty() || mesh().attributes.group.empty()) return;
+    std::string glb(bytes->values.size(), '\0');
+    for (std::size_t i = 0; i < glb.size(); ++i)
+      glb[i] = static_cast<char>(static_cast<unsigned char>(bytes->values[i]));
+    mesh().attributes.library.glb = std::make_shared<const std::string>(std::move(glb));
+  }
+
   // An element row for each front, and one for each of its points and contacts.
   void fronts();
 
@@ -216,6 +316,7 @@ class Reader {
   const std::string& name_;
   const PlyElement *vertex_ = nullptr, *face_ = nullptr;
   const PlyProperty *patch_ = nullptr, *indices_ = nullptr;
+  PlyElement strip_faces_;  // faces of triangle strips
   std::vector<Part> parts_;
   SurfaceFile file_;
 };

@@ -1,6 +1,7 @@
 // write_ply() of kerf/files.h. Writes a surface as binary little-endian PLY, with all that
 // reading it back bit by bit needs.
 #include <cfloat>
+#include <charconv>
 #include <cmath>
 #include <span>
 
@@ -8,6 +9,12 @@
 
 namespace geo {
 namespace {
+
+// A number in the shortest form that is read back exactly.
+std::string shortest(double x) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, x).ptr};
+}
 
 template <class T>
 void put(std::string& row, T value) {
@@ -62,6 +69,34 @@ bool told_by_vertices(const TriangleMesh& mesh, const std::vector<std::array<V, 
   return true;
 }
 
+// The comments of the header: all that is text.
+void write_comments(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts,
+                    const std::string& comment) {
+  const Attributes& a = mesh.attributes;
+  if (!comment.empty()) out << "comment " << comment << '\n';
+  for (const auto& f : fronts) out << "comment kerf_front " << f.name << '\n';
+  for (const auto& name : a.group_names) out << "comment kerf_group " << name << '\n';
+  if (!a.materials.empty()) out << "comment kerf_materials " << a.materials << '\n';
+  if (mesh.unit > 0) out << "comment kerf_unit " << shortest(mesh.unit) << '\n';
+}
+
+// The rows of fronts and of their contacts.
+void put_fronts(std::string& row, const std::vector<FrontState>& fronts) {
+  for (const auto& f : fronts) {
+    put(row, f.crack);
+    put(row, f.step);
+    put<std::uint8_t>(row, f.closed);
+  }
+  for (std::uint32_t i = 0; i < fronts.size(); ++i)
+    for (std::uint32_t s = 0; s < fronts[i].segments.size(); ++s)
+      for (const auto& p : fronts[i].segments[s]) {
+        put(row, i);
+        put(row, s);
+        put<std::int32_t>(row, p.id.valid() ? static_cast<std::int32_t>(p.id.value) : -1);
+        for (int c = 0; c < 3; ++c) put(row, p.position[c]);
+      }
+}
+
 }  // namespace
 
 void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts,
@@ -87,15 +122,13 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
       lists.push_back({"color", block_of(a.color, true)});
   }
   if (!a.uv.empty()) lists.push_back({"texcoord", block_of(a.uv)});
+  if (!a.uv2.empty()) lists.push_back({"texcoord2", block_of(a.uv2)});
 
   std::size_t contacts = 0;
   for (const auto& f : fronts)
     for (const auto& s : f.segments) contacts += s.size();
   out << "ply\nformat binary_little_endian 1.0\n";
-  if (!comment.empty()) out << "comment " << comment << '\n';
-  for (const auto& f : fronts) out << "comment kerf_front " << f.name << '\n';
-  for (const auto& name : a.group_names) out << "comment kerf_group " << name << '\n';
-  if (!a.materials.empty()) out << "comment kerf_materials " << a.materials << '\n';
+  write_comments(out, mesh, fronts, comment);
   out << "element vertex " << mesh.vertices.size() << "\nproperty double x\nproperty double y\nproperty double z\n";
   if (mesh.two_sided()) out << "property uint site\n";
   for (const auto& [names, block] : vertex_blocks)
@@ -110,6 +143,8 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
         << "\nproperty int crack\nproperty uint step\nproperty uchar closed\nelement kerf_contact " << contacts
         << "\nproperty uint front\nproperty uint segment\nproperty int site\nproperty double x\nproperty double "
            "y\nproperty double z\n";
+  const std::string* library = a.group.empty() ? nullptr : a.library.glb.get();
+  if (library) out << "element kerf_library 1\nproperty list uint uchar glb\n";
   out << "end_header\n";
   std::string row;
   const auto flush = [&](bool last) {
@@ -135,13 +170,11 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<Fr
     }
     flush(false);
   }
-  for (const auto& f : fronts) put(row, f.crack), put(row, f.step), put<std::uint8_t>(row, f.closed);
-  for (std::uint32_t i = 0; i < fronts.size(); ++i)
-    for (std::uint32_t s = 0; s < fronts[i].segments.size(); ++s)
-      for (const auto& p : fronts[i].segments[s]) {
-        put(row, i), put(row, s), put<std::int32_t>(row, p.id.valid() ? static_cast<std::int32_t>(p.id.value) : -1);
-        for (int c = 0; c < 3; ++c) put(row, p.position[c]);
-      }
+  put_fronts(row, fronts);
+  if (library) {
+    put(row, static_cast<std::uint32_t>(library->size()));
+    row += *library;
+  }
   flush(true);
 }
 

@@ -124,6 +124,12 @@ void write_usda(std::ostream& out, const UsdRun& run) {
       << "\"\n    startTimeCode = 0\n    endTimeCode = " << (run.frames > 0 ? run.frames - 1 : 0)
       << "\n    timeCodesPerSecond = " << run.frame_rate
       << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
+  const Vec3 offset = run.frames > 0 ? single_precision_offset(bounding_box(run.surface(0))) : Vec3(Vec3::Zero());
+  if (!offset.isZero(0)) {
+    std::string text;
+    add_translation(text, "    ", offset);
+    out << text;
+  }
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
   constexpr std::size_t most_kept = 16;      // larger: more memory, fewer frames are read twice
@@ -134,7 +140,7 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     Samples points(out, "        ", "point3f[] points");
     const auto read = [&](std::size_t i) {
       TriangleMesh m = run.surface(i);
-      std::string text = points_of(m);
+      std::string text = points_of(m, offset);
       return std::pair(std::move(text), std::move(m));
     };
     each_in_order(all_frames(run), read, [&](std::size_t i, auto made) {
@@ -165,7 +171,8 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     const TriangleMesh first = run.obstacles(0);
     out << "        int[] faceVertexCounts = " << counts_of(first)
         << "\n        int[] faceVertexIndices = " << corners_of_triangles(first) << '\n';
-    add_samples(out, "        ", "point3f[] points", all_frames(run), run.obstacles, points_of);
+    add_samples(out, "        ", "point3f[] points", all_frames(run), run.obstacles,
+                [&](const TriangleMesh& m) { return points_of(m, offset); });
     out << "    }\n";
   }
   out << "\n    def Scope \"materials\"\n    {\n";

@@ -57,10 +57,9 @@ class UsdStage {
   }
   void end() { --depth_, line("}"); }
   void translate(const Vec3& by) {
-    std::string text = "double3 xformOp:translate = (";
-    for (int i = 0; i < 3; ++i) text += i > 0 ? ", " : "", add_number(text, by[i]);
-    line(text + ")");
-    line("uniform token[] xformOpOrder = [\"xformOp:translate\"]");
+    std::string text;
+    add_translation(text, std::string(4 * depth_, ' '), by);
+    out_ << text;
   }
 
  private:
@@ -93,11 +92,14 @@ class UsdPieces {
         bonds_(bonds),
         labels_(labels),
         options_(options),
+        unit_(!chunks.empty() && chunks[0].mesh.unit > 0 ? chunks[0].mesh.unit : 1),
+        offset_(single_precision_offset(bounding_box(chunks))),
         centroids_(cluster_centroids(chunks, labels.levels)),
         paths_(chunks.size()) {
-    out << "#usda 1.0\n(\n    defaultPrim = \"pieces\"\n    kilogramsPerUnit = 1\n    metersPerUnit = 1\n    upAxis = "
-           "\""
-        << (options.z_up ? 'Z' : 'Y') << "\"\n)\n\n";
+    std::string unit;
+    add_number(unit, unit_);
+    out << "#usda 1.0\n(\n    defaultPrim = \"pieces\"\n    kilogramsPerUnit = 1\n    metersPerUnit = " << unit
+        << "\n    upAxis = \"" << (options.z_up ? 'Z' : 'Y') << "\"\n)\n\n";
   }
 
   void write() {
@@ -106,9 +108,10 @@ class UsdPieces {
       for (std::size_t i = 0; i < labels_.levels[k].of.size(); ++i) below_[k][labels_.levels[k].of[i]].push_back(i);
     }
     stage_.begin("Xform", "pieces");
+    if (!offset_.isZero(0)) stage_.translate(offset_);
     const std::size_t top = labels_.levels.size();
     const std::size_t count = top > 0 ? labels_.levels.back().volume.size() : chunks_.size();
-    for (std::size_t i = 0; i < count; ++i) member(top, i, "/pieces/", Vec3::Zero());
+    for (std::size_t i = 0; i < count; ++i) member(top, i, "/pieces/", offset_);
     if (!bonds_.empty()) {
       stage_.begin("Scope", "bonds");
       for (const Bond& bond : bonds_) joint(bond);
@@ -133,7 +136,7 @@ class UsdPieces {
 
   void piece(std::size_t p, const std::string& path, const Vec3& origin) {
     Chunk chunk = completed(chunks_[p]);
-    const RigidBody body = rigid_body(chunk, labels_.density);
+    const RigidBody body = rigid_body(chunk, labels_.density * unit_ * unit_ * unit_);
     const std::string name = identifier(labels_.names[p]);
     paths_[p] = path + name;
     stage_.begin("Mesh", name,
@@ -202,8 +205,8 @@ class UsdPieces {
     stage_.line("point3f physics:localPos1 = " + usd_tuple(Vec3(bond.centroid - chunks_[bond.b].centroid)));
     stage_.line("quatf physics:localRot0 = (1, 0, 0, 0)");
     stage_.line("quatf physics:localRot1 = (1, 0, 0, 0)");
-    stage_.line("float physics:breakForce = " + usd_number(labels_.strength * bond.area));
-    stage_.line("float physics:breakTorque = " + usd_number(labels_.strength * bond.section));
+    stage_.line("float physics:breakForce = " + usd_number(labels_.strength * unit_ * bond.area));
+    stage_.line("float physics:breakTorque = " + usd_number(labels_.strength * unit_ * bond.section));
     // Bonds make loops, which an articulation must not have.
     stage_.line("uniform bool physics:excludeFromArticulation = 1");
     stage_.end();
@@ -226,6 +229,10 @@ class UsdPieces {
   const std::vector<Bond>& bonds_;
   const ChunkLabels& labels_;
   const UsdOptions& options_;
+  // Numbers are in units of the stage: kg, the model's unit of length, and seconds. So a density of
+  // kg/m³ is multiplied by the cube of the unit, and a strength of N/m² = kg/(m s²) by the unit.
+  double unit_;
+  Vec3 offset_;
   std::vector<std::vector<Vec3>> centroids_;                  // of clusters, by level
   std::vector<std::vector<std::vector<std::size_t>>> below_;  // members of clusters, by level
   std::vector<std::string> paths_;                            // of pieces

@@ -25,6 +25,16 @@ void add_list(std::string& text, std::size_t count, const auto& item) {
   text += ']';
 }
 
+/// Appends an attribute with a translation in double precision, each line after `margin`.
+inline void add_translation(std::string& text, const std::string& margin, const Vec3& by) {
+  text += margin + "double3 xformOp:translate = (";
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0) text += ", ";
+    add_number(text, by[i]);
+  }
+  text += ")\n" + margin + "uniform token[] xformOpOrder = [\"xformOp:translate\"]\n";
+}
+
 /// Appends a vector in single precision.
 template <class Row>
 void add_tuple(std::string& text, const Row& row) {
@@ -38,12 +48,12 @@ void add_tuple(std::string& text, const Row& row) {
   text.append(chars, at);
 }
 
-/// The vertices of a mesh.
-inline std::string points_of(const TriangleMesh& m) {
+/// The vertices of a mesh, less `offset`.
+inline std::string points_of(const TriangleMesh& m, const Vec3& offset = Vec3::Zero()) {
   constexpr std::size_t usual = 40;  // characters
   std::string text;
   text.reserve(usual * m.vertices.size());
-  add_list(text, m.vertices.size(), [&](std::size_t v) { add_tuple(text, m.vertices[v]); });
+  add_list(text, m.vertices.size(), [&](std::size_t v) { add_tuple(text, Vec3(m.vertices[v] - offset)); });
   return text;
 }
 

@@ -99,6 +99,7 @@ std::uint32_t source_of(const TriangleMesh& original, std::uint32_t t) {
 std::vector<std::string> Attributes::names() const {
   std::vector<std::string> result;
   if (!uv.empty()) result.push_back("uv");
+  if (!uv2.empty()) result.push_back("uv2");
   if (!normal.empty()) result.push_back("normal");
   if (!color.empty()) result.push_back("color");
   if (!group.empty()) result.push_back("group");
@@ -121,7 +122,10 @@ void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived) {
   Attributes to;
   to.group_names = from.group_names;
   to.materials = from.materials;
+  to.library = from.library;
+  derived.unit = original.unit;
   if (!from.uv.empty()) to.uv.resize(count);
+  if (!from.uv2.empty()) to.uv2.resize(count);
   if (!from.normal.empty()) to.normal.resize(count);
   if (!from.color.empty()) to.color.resize(count);
   if (!from.group.empty()) to.group.resize(count);
@@ -131,6 +135,7 @@ void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived) {
     const std::uint32_t row = derived.source[t];
     if (row == ~0u) {
       if (!to.uv.empty()) to.uv[t].fill(Vec2::Zero());
+      if (!to.uv2.empty()) to.uv2[t].fill(Vec2::Zero());
       if (!to.normal.empty()) to.normal[t].fill(face_normal(corners[0], corners[1], corners[2]));
       if (!to.color.empty()) to.color[t].fill(crack_color);
       if (to.group.empty()) continue;
@@ -149,6 +154,7 @@ void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived) {
     for (int k = 0; k < 3; ++k) {
       const Location at = locate(source, corners[k]);
       if (!to.uv.empty()) to.uv[t][k] = interpolated(from.uv[s], at);
+      if (!to.uv2.empty()) to.uv2[t][k] = interpolated(from.uv2[s], at);
       if (!to.color.empty()) to.color[t][k] = interpolated(from.color[s], at);
       if (to.normal.empty()) continue;
       Vec3 n = interpolated(from.normal[s], at);

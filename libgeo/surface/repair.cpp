@@ -62,7 +62,13 @@ void keep(TriangleMesh& mesh, const std::vector<char>& kept) {
     values.resize(count);
   };
   Attributes& a = mesh.attributes;
-  filter(mesh.triangles), filter(mesh.source), filter(a.uv), filter(a.normal), filter(a.color), filter(a.group);
+  filter(mesh.triangles);
+  filter(mesh.source);
+  filter(a.uv);
+  filter(a.uv2);
+  filter(a.normal);
+  filter(a.color);
+  filter(a.group);
 }
 
 // Reverses the orientation of a triangle; its normals turn outwards.
@@ -70,6 +76,7 @@ void flip(TriangleMesh& mesh, std::uint32_t t) {
   std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
   Attributes& a = mesh.attributes;
   if (!a.uv.empty()) std::swap(a.uv[t][1], a.uv[t][2]);
+  if (!a.uv2.empty()) std::swap(a.uv2[t][1], a.uv2[t][2]);
   if (!a.color.empty()) std::swap(a.color[t][1], a.color[t][2]);
   if (a.normal.empty()) return;
   std::swap(a.normal[t][1], a.normal[t][2]);
@@ -200,7 +207,9 @@ void add_patch(TriangleMesh& mesh, const std::vector<HalfEdge>& rim, const FairP
     for (const auto& [a, b, c] : patch.between) at.push_back((at[a] + at[b] + at[c]) / 3);
   };
   Attributes& a = mesh.attributes;
-  spread(a.uv, means), spread(a.color, means);
+  spread(a.uv, means);
+  spread(a.uv2, means);
+  spread(a.color, means);
   const auto normal_of = [&](std::uint32_t t) {
     return face_normal(mesh.vertices[mesh.triangles[t][0]], mesh.vertices[mesh.triangles[t][1]],
                        mesh.vertices[mesh.triangles[t][2]]);

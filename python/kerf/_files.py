@@ -2,16 +2,20 @@
 from kerf import _kerf
 
 
-def load(path):
+def load(path, unit=""):
     """Reads a file of any kind, recognised by its content.
 
     A valid solid gives a Solid, a cut surface a Complex with its fronts, any other surface a Mesh; an OpenVDB volume
     the Solid of its surface; fronts and sheets a list of Front; a .kerf file a Body; nodes a NodeSet.
+    unit: of a surface's coordinates, "mm" and so on, in place of what the file states; see Mesh.unit. What a surface's
+    reader leaves out is a warning (UserWarning).
     Raises InputError, with the line or entry, for a malformed file; MissingInputError where there is none.
     """
     kind = _kerf._kind(path)
     if kind == "surface":
-        return _kerf._load_surface(path)
+        return _kerf._load_surface(path, unit)
+    if unit:
+        raise _kerf.InputError(f"{path}: is no surface, which alone has a unit; leave out unit")
     if kind == "fronts":
         return _kerf.load_fronts(path)
     if kind == "volume":

@@ -70,6 +70,16 @@ void add_arrays(Class& mesh) {
           "group_names", [](const Mesh& self) { return py::tuple(py::cast(self.mesh.attributes.group_names)); },
           "Names of the groups.")
       .def_property_readonly(
+          "uv2",
+          [](const py::object& self) {
+            return array_of<double>(self, mesh_of(self).attributes.uv2, {3, 2});
+          },
+          "A second set of texture coordinates per corner, (m, 3, 2) float64, or None. Read-only view.")
+      .def_property_readonly(
+          "unit",
+          [](const Mesh& self) { return self.mesh.unit > 0 ? py::object(py::float_(self.mesh.unit)) : py::none(); },
+          "The metres that one unit of the coordinates is, or None where nothing says so.")
+      .def_property_readonly(
           "materials", [](const Mesh& self) { return self.mesh.attributes.materials; },
           "File that describes materials of the groups' names, or ''.")
       .def_property_readonly(

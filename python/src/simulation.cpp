@@ -172,6 +172,8 @@ RunModels models_of(const geo::Scene& scene, const Meshes& given) {
     const auto bytes = given.empty() ? geo::read_all(path) : bytes_of(given[i]->mesh);
     meshes.push_back(given.empty() ? geo::parse_surface(bytes, path).mesh : given[i]->mesh);
     require_whole(meshes.back(), given.empty() ? path : "models");
+    meshes.back().attributes.library = {};                // each frame would hold its images
+    meshes.back().unit = meshes.back().unit > 0 ? 1 : 0;  // scenes are in metres
     hashes += " " + std::to_string(geo::fingerprint(bytes));
   }
   out.fingerprint = geo::fingerprint(hashes);

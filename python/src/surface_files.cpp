@@ -21,12 +21,43 @@ namespace {
   throw geo::InputError(path + ": ends in no known format; give .ply, .obj or .glb");
 }
 
-geo::SurfaceFile parsed(const std::string& bytes, const std::string& name) {
-  return without_gil([&] { return geo::parse_surface(bytes, name); });
+// The metres of a unit that a caller names; 0 without a name. Throws InputError.
+double metres_of(const std::string& unit) {
+  if (unit.empty()) return 0;
+  const auto metres = geo::length_unit(unit);
+  if (!metres) throw geo::InputError("unit: '" + unit + "' is none; give one of " + geo::length_unit_names());
+  return *metres;
 }
 
-geo::SurfaceFile read(const Path& path) {
-  return without_gil([&] { return geo::read_surface(path.text); });
+// Raises what a reader left out as warnings of Python, which may be errors there.
+geo::SurfaceFile with_warnings(geo::SurfaceFile&& file, const std::string& name, const std::string& unit) {
+  if (!unit.empty()) file.mesh.unit = metres_of(unit);
+  for (const std::string& note : file.notes)
+    if (PyErr_WarnEx(PyExc_UserWarning, (name + ": " + note).c_str(), 1) != 0) throw py::error_already_set();
+  return std::move(file);
+}
+
+// Warns of what an OBJ file does not hold.
+void warn_of_obj(const geo::TriangleMesh& mesh, const std::string& path) {
+  if (!path.ends_with(".obj") || (!mesh.attributes.library.glb && mesh.attributes.uv2.empty())) return;
+  const std::string text =
+      path + ": left out: materials but their names, second texture coordinates; a .ply keeps them";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+// Warns where a .glb gets an offset.
+void warn_of_offset(const geo::Box3& box, const std::string& path) {
+  if (!path.ends_with(".glb") || geo::single_precision_offset(box).isZero(0)) return;
+  const std::string text = path + ": the model is far from the origin; the root node moves it there";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+geo::SurfaceFile parsed(const std::string& bytes, const std::string& name, const std::string& unit) {
+  return with_warnings(without_gil([&] { return geo::parse_surface(bytes, name); }), name, unit);
+}
+
+geo::SurfaceFile read(const Path& path, const std::string& unit) {
+  return with_warnings(without_gil([&] { return geo::read_surface(path.text); }), path.text, unit);
 }
 
 std::shared_ptr<Complex> with_fronts(geo::SurfaceFile&& file, const std::string& name) {
@@ -58,8 +89,8 @@ std::shared_ptr<Solid> solid_of(geo::SurfaceFile&& file, const std::string& name
 }
 
 // A Complex where the surface is cut, a Solid where it is one, else a Mesh.
-py::object any_surface(const Path& path) {
-  auto file = read(path);
+py::object any_surface(const Path& path, const std::string& unit) {
+  auto file = read(path, unit);
   const bool valid = without_gil([&] {
     const auto report = geo::check_surface(file.mesh, true);
     return report.good() && (file.mesh.two_sided() || geo::signed_volume(file.mesh) > 0);
@@ -71,30 +102,43 @@ py::object any_surface(const Path& path) {
 }
 
 // A mesh as the only chunk.
-geo::Chunk chunk_of(const Mesh& given) {
+geo::Chunk chunk_of(const Mesh& given, double unit) {
   const auto* piece = dynamic_cast<const Piece*>(&given);
   const auto box = geo::bounding_box(given.mesh);
   if (box.empty()) throw geo::InputError("save: a mesh without triangles is no .glb");
   geo::Chunk chunk{given.mesh, piece ? piece->volume : geo::signed_volume(given.mesh),
                    piece ? piece->centroid : box.center()};
   chunk.mesh.site.clear();
+  if (unit > 0) chunk.mesh.unit = unit;
   return chunk;
 }
 
 // One node, whose origin is the middle of the box; a piece's is its centroid.
-void write_glb(std::ostream& out, const Mesh& mesh) {
+void write_glb(std::ostream& out, const Mesh& mesh, double unit) {
   const auto* piece = dynamic_cast<const Piece*>(&mesh);
-  geo::write_glb(out, {chunk_of(mesh)}, {}, {"node", {piece ? geo::piece_name(piece->index) : std::string("mesh")}, 1});
+  geo::write_glb(out, {chunk_of(mesh, unit)}, {},
+                 {"node", {piece ? geo::piece_name(piece->index) : std::string("mesh")}, 1});
 }
 
-void save_mesh(const Mesh& self, const Path& path) {
+// A .ply with another unit than the mesh's.
+void write_ply(std::ostream& out, const geo::TriangleMesh& mesh, double unit) {
+  if (!(unit > 0) || unit == mesh.unit) return geo::write_ply(out, mesh);
+  geo::TriangleMesh stated = mesh;
+  stated.unit = unit;
+  geo::write_ply(out, stated);
+}
+
+void save_mesh(const Mesh& self, const Path& path, const std::string& unit_name) {
   const std::string& p = path.text;
+  const double unit = metres_of(unit_name);
   if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p);
+  warn_of_obj(self.mesh, p);
+  warn_of_offset(geo::bounding_box(self.mesh), p);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
-      p.ends_with(".ply")   ? geo::write_ply(out, self.mesh)
+      p.ends_with(".ply")   ? write_ply(out, self.mesh, unit)
       : p.ends_with(".obj") ? geo::write_obj(out, self.mesh)
-                            : write_glb(out, self);
+                            : write_glb(out, self, unit);
     });
   });
 }
@@ -120,24 +164,40 @@ void require_tile(double tile, double strength) {
   if (!(strength >= 0 && strength <= 1e100)) throw geo::InputError("save: strength must be 0 or more");
 }
 
-void save_complex(Complex& self, const Path& path, int corners, int parts, double tile, double strength, bool z_up) {
+// Options of Complex.save() for a .glb.
+struct SaveOptions {
+  int corners, parts;
+  double tile, strength;
+  bool z_up;
+};
+
+void save_complex(Complex& self, const Path& path, const SaveOptions& w, const std::string& unit_name) {
   const std::string& p = path.text;
+  const double unit = metres_of(unit_name);
   if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p);
-  require_tile(tile, strength);
-  if (corners != 0 && (corners < 4 || corners > 100000))
+  require_tile(w.tile, w.strength);
+  if (w.corners != 0 && (w.corners < 4 || w.corners > 100000))
     throw geo::InputError("save: corners must be 0 or from 4 to 100000");
-  if (parts < 1 || parts > 1000) throw geo::InputError("save: parts must be from 1 to 1000");
+  if (w.parts < 1 || w.parts > 1000) throw geo::InputError("save: parts must be from 1 to 1000");
+  if (self.model) warn_of_obj(self.model->mesh, p);
+  warn_of_offset(self.complex.extent(), p);
   const Reading reading(self.busy);
   const auto found = p.ends_with(".glb") ? self.found() : nullptr;
   std::vector<geo::FrontState> fronts;
   for (const auto& front : self.fronts) fronts.push_back(front->state);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
-      if (p.ends_with(".ply")) return geo::write_ply(out, self.surface(), fronts);
       if (p.ends_with(".obj")) return geo::write_obj(out, self.surface());
-      const auto e = exported(self, *found, tile, strength);
+      if (p.ends_with(".ply")) {
+        geo::TriangleMesh mesh = self.surface();
+        if (unit > 0) mesh.unit = unit;
+        return geo::write_ply(out, mesh, fronts);
+      }
+      auto e = exported(self, *found, w.tile, w.strength);
+      if (unit > 0)
+        for (geo::Chunk& chunk : e.chunks) chunk.mesh.unit = unit;
       geo::write_glb(out, e.chunks, e.bonds, e.labels,
-                     {static_cast<std::size_t>(corners), static_cast<std::size_t>(parts), z_up});
+                     {static_cast<std::size_t>(w.corners), static_cast<std::size_t>(w.parts), w.z_up});
     });
   });
 }
@@ -162,7 +222,8 @@ std::string kind_name(const Path& path) {
 
 constexpr const char* read_doc =
     "Reads PLY, OBJ, STL, OFF, glTF, FBX and more. Polygons are triangulated; coincident vertices of seams are\n"
-    "merged. ";
+    "merged. unit: of the coordinates, \"mm\" and so on, in place of what the file states. What is left out is a\n"
+    "warning. ";
 
 }  // namespace
 
@@ -178,41 +239,50 @@ void bind_surface_files(py::module_& module) {
                                          "for a malformed file, and as Complex().";
   py::class_<Mesh, std::shared_ptr<Mesh>>(module.attr("Mesh"))
       .def_static(
-          "load", [](const Path& path) { return std::make_shared<Mesh>(read(path).mesh); }, py::arg("path"),
-          mesh_doc.c_str())
+          "load",
+          [](const Path& path, const std::string& unit) { return std::make_shared<Mesh>(read(path, unit).mesh); },
+          py::arg("path"), py::arg("unit") = "", mesh_doc.c_str())
       .def_static(
           "parse",
-          [](const py::bytes& data, const std::string& name) {
-            return std::make_shared<Mesh>(parsed(data.cast<std::string>(), name).mesh);
+          [](const py::bytes& data, const std::string& name, const std::string& unit) {
+            return std::make_shared<Mesh>(parsed(data.cast<std::string>(), name, unit).mesh);
           },
-          py::arg("data"), py::arg("name") = "bytes",
+          py::arg("data"), py::arg("name") = "bytes", py::arg("unit") = "",
           "As load(), from bytes in memory; `name` stands for the file in messages.")
-      .def(
-          "save", &save_mesh, py::arg("path"),
-          "Writes .ply (binary, with all arrays), .obj or .glb (glTF 2.0), by the path's ending. The file is replaced\n"
-          "when it is complete. Raises OutputError where it cannot be written, InputError for another ending.");
+      .def("save", &save_mesh, py::arg("path"), py::arg("unit") = "",
+           "Writes .ply (binary, with all arrays), .obj or .glb (glTF 2.0, in metres), by the path's ending. unit: of\n"
+           "the coordinates, \"mm\" and so on, in place of the mesh's own. The file is replaced when it is complete.\n"
+           "Raises OutputError where it cannot be written, InputError for another ending.");
   py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
       .def_static(
-          "load", [](const Path& path) { return solid_of(read(path), path.text); }, py::arg("path"), solid_doc.c_str());
+          "load", [](const Path& path, const std::string& unit) { return solid_of(read(path, unit), path.text); },
+          py::arg("path"), py::arg("unit") = "", solid_doc.c_str());
   py::class_<Complex, std::shared_ptr<Complex>>(module.attr("Complex"))
       .def_static(
-          "load", [](const Path& path) { return with_fronts(read(path), path.text); }, py::arg("path"),
-          complex_doc.c_str())
+          "load", [](const Path& path, const std::string& unit) { return with_fronts(read(path, unit), path.text); },
+          py::arg("path"), py::arg("unit") = "", complex_doc.c_str())
       .def(
-          "save", &save_complex, py::arg("path"), py::arg("corners") = 0, py::arg("parts") = 1, py::arg("tile") = 0.25,
-          py::arg("strength") = 1.0, py::arg("z_up") = false,
+          "save",
+          [](Complex& self, const Path& path, int corners, int parts, double tile, double strength, bool z_up,
+             const std::string& unit) {
+            save_complex(self, path, {corners, parts, tile, strength, z_up}, unit);
+          },
+          py::arg("path"), py::arg("corners") = 0, py::arg("parts") = 1, py::arg("tile") = 0.25,
+          py::arg("strength") = 1.0, py::arg("z_up") = false, py::arg("unit") = "",
           "Writes surface(): .ply with its fronts, which load() reads back, or .obj; or the pieces with their bonds "
           "as\n"
           ".glb (glTF 2.0): a node for each piece (§ 7). For .glb: corners of convex hulls, 0: no hulls; parts, hulls\n"
           "for each piece; tile, size of a texture tile on inner faces, a fraction of the diagonal; strength, force "
           "per\n"
-          "unit of area; z_up: the model's z axis is vertical. Raises OutputError, InputError.")
+          "square metre; z_up: the model's z axis is vertical; unit: of the coordinates, \"mm\" and so on, in place "
+          "of\n"
+          "the model's own: a .glb is in metres. Raises OutputError, InputError.")
       .def("save_bonds", &save_bonds, py::arg("path"), py::arg("strength") = 1.0,
            "Writes pieces and bonds as JSON (docs/formats.md). strength: force per unit of area that a bond "
            "withstands.\n"
            "Raises OutputError, InputError.");
   module.def("_kind", &kind_name, py::arg("path"));
-  module.def("_load_surface", &any_surface, py::arg("path"));
+  module.def("_load_surface", &any_surface, py::arg("path"), py::arg("unit") = "");
 }
 
 }  // namespace kerf_python

@@ -49,7 +49,10 @@ TEST_CASE("PLY elements have the values of text and of either byte order", "[tex
     CHECK(v->find("n")->values == std::vector<double>{7, 8});
     CHECK(v->find("l")->values == std::vector<double>{-1, 300});
     CHECK(v->find("l")->ends == std::vector<std::uint32_t>{2, 2});
-    CHECK_THAT(refusal([&] { parse_ply(bytes + "x", "a.ply"); }), Catch::Contains("after its last element"));
+    CHECK_FALSE(ply.has_rest);
+    CHECK(parse_ply(bytes + "x", "a.ply").has_rest);
+    CHECK_THAT(refusal([&] { require_no_rest(parse_ply(bytes + "x", "a.ply"), "a.ply"); }),
+               Catch::Contains("after its last element"));
     CHECK_THAT(refusal([&] { parse_ply(bytes.substr(0, bytes.size() - 3), "a.ply"); }), Catch::StartsWith("a.ply"));
   }
   CHECK(parse_ply(text, "a.ply").comments == std::vector<std::string>{"a b"});

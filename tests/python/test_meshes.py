@@ -1,8 +1,10 @@
 """Meshes of the module kerf: repair, refinement, hulls, imports from other packages, shapes, files."""
+import json
 import os
 import tempfile
 import types
 import unittest
+import warnings
 
 import kerf
 import numpy as np
@@ -169,6 +171,60 @@ class Files(unittest.TestCase):
         self.assertIs(type(kerf.load(self.path("open.ply"))), kerf.Mesh)
         with self.assertRaises(kerf.InputError):
             kerf.Solid.load(self.path("open.ply"))
+
+    def test_units(self):
+        s = cube()
+        self.assertIsNone(s.unit)
+        s.save(self.path("mm.ply"), unit="mm")
+        self.assertEqual(kerf.load(self.path("mm.ply")).unit, 0.001)
+        self.assertEqual(kerf.load(self.path("mm.ply"), unit="in").unit, 0.0254)
+        part = kerf.Solid.load(self.path("mm.ply"))
+        broken = part.crack(kerf.score(part, "voronoi", pieces=3, seed=7))
+        broken.save(self.path("pieces.glb"))
+        metres = kerf.load(self.path("pieces.glb"))
+        self.assertEqual(metres.unit, 1)
+        np.testing.assert_allclose(metres.bounds, [[0, 0, 0], [0.001] * 3], atol=1e-9)
+        for piece in broken.pieces():
+            self.assertEqual(piece.unit, 0.001)
+        s.save(self.path("inch.glb"), unit="in")
+        np.testing.assert_allclose(kerf.load(self.path("inch.glb")).bounds[1], [0.0254] * 3, rtol=1e-6)
+        broken.save(self.path("feet.glb"), unit="ft")
+        np.testing.assert_allclose(kerf.load(self.path("feet.glb")).bounds[1], [0.3048] * 3, rtol=1e-6)
+        for call in (lambda: kerf.load(self.path("mm.ply"), unit="parsec"), lambda: s.save(self.path("a.ply"), unit="-")):
+            with self.assertRaisesRegex(kerf.InputError, "give one of m, cm, mm"):
+                call()
+
+    def test_far_from_the_origin(self):
+        far = np.array([691234.5678, 5401234.5678, 512.3])
+        s = kerf.Solid(CUBE + far, CUBE_FACES)
+        with self.assertWarnsRegex(UserWarning, "far.glb: the model is far from the origin"):
+            s.save(self.path("far.glb"))
+        np.testing.assert_allclose(kerf.load(self.path("far.glb")).bounds, [far, far + 1], rtol=0, atol=1e-6)
+
+    def test_materials_of_a_glb(self):
+        model = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../io/cases/gltf/prop.glb")
+        s = kerf.load(model)
+        self.assertEqual(s.uv2.shape, (108, 3, 2))
+        s.crack(kerf.score(s, "voronoi", pieces=3, seed=7)).save(self.path("pieces.glb"))
+        documents = []
+        for name in (model, self.path("pieces.glb")):
+            with open(name, "rb") as file:
+                data = file.read()
+            documents.append(json.loads(data[20:20 + int.from_bytes(data[12:16], "little")]))
+        self.assertEqual(documents[1]["materials"][:2], documents[0]["materials"])
+        self.assertEqual(len(documents[1]["images"]), 1)
+        with self.assertWarnsRegex(UserWarning, "left out: materials but their names"):
+            s.save(self.path("prop.obj"))
+
+    def test_what_is_left_out_is_a_warning(self):
+        with open(self.path("lines.obj"), "w") as file:
+            file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nl 1 2\n")
+        with self.assertWarnsRegex(UserWarning, "lines.obj: left out: 1 polyline"):
+            self.assertEqual(len(kerf.load(self.path("lines.obj"))), 4)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaises(UserWarning):
+                kerf.load(self.path("lines.obj"))
 
     def test_cut_models_go_on(self):
         c = kerf.Solid(CUBE, CUBE_FACES, groups=["a"] * 12).complex()

@@ -71,6 +71,10 @@ END
 # Rotated pieces, single precision; folders of PLY files.
 kerf-dataset apple.ply block.ply --seeds 3 --pieces 4 --rotate --single -o posed && python "$here/check_dataset.py" posed "$volumes" || fail "--rotate --single"
 python -c 'import glob, numpy as np; z = np.load(glob.glob("posed/*/apple-*.npz")[0]); assert z["vertices"].dtype == np.float32 and abs(z["piece_rotation"][:, 0]).max() < 1 and np.allclose(np.linalg.norm(z["piece_rotation"], axis=1), 1)' || fail "rotations"
+# Single precision would part the pieces of a model that is far from the origin.
+printf 'v 691234 5401234 0\nv 691235 5401234 0\nv 691234 5401235 0\nv 691234 5401234 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n' >far.obj
+kerf-dataset far.obj --seeds 1 --pieces 2 --single -o far || fail "a model far from the origin"
+python -c 'import glob, numpy as np; assert np.load(glob.glob("far/*/far-*.npz")[0])["vertices"].dtype == np.float64' || fail "--single far from the origin"
 kerf-dataset apple.ply block.ply --patterns voronoi,bricks --seeds 2 --pieces 4 --layout folders --split 50,0,50 -o folders && python "$here/check_dataset.py" folders "$volumes" || fail "--layout folders"
 [ "$(cat folders/data_split/shapes.{train,val,test}.txt | sort)" = "$(printf 'shapes/apple\nshapes/block')" ] || fail "data_split"
 kerf-info --check -q folders/shapes/apple/fractured_3/piece_0.ply || fail "a piece"

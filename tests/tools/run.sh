@@ -1,6 +1,6 @@
 #!/bin/bash
 # The tools, run as a user runs them: the pipeline on real models, and every refusal of the contract.
-#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | chunks | repairs | killed
+#   tests/tools/run.sh TOOLS_DIR SAMPLES_DIR MODELS_DIR pipeline MODEL | refusals | contract | kinds | attributes | details | files | stops | simulation | scores | chunks | repairs | readers | killed
 set -u
 script=$(realpath "$0")
 PATH=$(realpath "$1"):$(realpath "$2"):$PATH models=$(realpath "$3") what=$4
@@ -211,6 +211,79 @@ repairs)
   for options in "--weld -1" "--voxel 0.2" "--voxel nan"; do expect 2 "${options%% *}" kerf-repair box.obj $options -o x.ply; done
   expect 66 "cannot" kerf-repair missing.obj -o x.ply
   ;;
+readers)
+  cases=$(dirname "$script")/../io/cases
+  # said PATTERN COMMAND...: exit code 0 and one line on standard error with the pattern.
+  said() {
+    local pattern=$1
+    shift
+    "$@" 2>err.txt || fail "$* exits with $?: $(cat err.txt)"
+    [ "$(wc -l <err.txt)" = 1 ] && grep -q -e "$pattern" err.txt || fail "$* does not say '$pattern' in one line but: $(cat err.txt)"
+    rm -f err.txt
+  }
+  size() { kerf-info "$1" 2>/dev/null | head -1 | grep -o '; [0-9.e-]* × [0-9.e-]* × [0-9.e-]*'; }
+  # Extensions: read as they are meant, or refused by name.
+  [ "$(size "$cases/gltf/quantised.glb")" = "; 2 × 1 × 1" ] || fail "quantised.glb: $(size "$cases/gltf/quantised.glb")"
+  [ "$(size "$cases/gltf/skin.glb")" = "; 1 × 1 × 1" ] || fail "skin.glb: $(size "$cases/gltf/skin.glb")"
+  kerf-info --json "$cases/gltf/instances.glb" | grep -q '"pieces":3,' || fail "instances.glb has not three boxes"
+  expect 65 "meshopt.glb: requires the glTF extension EXT_meshopt_compression, .*; save it" kerf-crack "$cases/gltf/meshopt.glb" --jagged 0.1 -o x.ply
+  for file in "$cases"/stl/*.stl; do quietly kerf-info --check -q "$file"; done
+  # Readers say what they leave out, and -q is silent.
+  printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\nl 1 2\n' >lines.obj
+  said "kerf-repair: lines.obj: left out: 1 polyline" kerf-repair lines.obj --json -o tetrahedron.ply >/dev/null
+  quietly kerf-repair -q lines.obj -o tetrahedron.ply
+  # The materials of a .glb: through a .ply into the pieces. Other formats have their names.
+  printf 'front a\nstep 0\n-1 0.53 3\n2 0.53 3\nstep 1\n-1 0.53 -2\n2 0.53 -2\n' >a.front
+  quietly kerf-crack "$cases/gltf/prop.glb" --front a.front -o broken.ply
+  quietly kerf-pieces broken.ply --physics omi -o pieces.glb
+  /usr/bin/python3 - "$cases/gltf/prop.glb" pieces.glb <<'END' || fail "materials of pieces.glb"
+import json, struct, sys
+def parts(name):
+    data = open(name, "rb").read()
+    length = struct.unpack("<I", data[12:16])[0]
+    return json.loads(data[20:20 + length]), data[28 + length:]
+def image(document, binary):
+    view = document["bufferViews"][document["images"][0]["bufferView"]]
+    return binary[view.get("byteOffset", 0):][:view["byteLength"]]
+(before, first), (after, last) = parts(sys.argv[1]), parts(sys.argv[2])
+assert after["materials"][:2] == before["materials"] and len(after["images"]) == 1, after["materials"]
+assert image(before, first) == image(after, last)
+assert sum(node["name"].startswith("piece_") for node in after["nodes"] if "mesh" in node) == 2
+END
+  said "cut.obj: left out: materials but their names, second texture coordinates" kerf-crack "$cases/gltf/prop.glb" --front a.front -o cut.obj
+  said "folder: left out: materials but their names" kerf-pieces broken.ply -o folder
+  said "pieces.usda: left out: materials but their names" kerf-pieces broken.ply -o pieces.usda
+  printf '[body]\nmesh = "%s"\nspacing = 0.3\n[time]\nframes = 1\n' "$(realpath "$cases/gltf/prop.glb")" >prop.toml
+  kerf-sim prop.toml -o prop 2>&1 | grep -q 'prop.glb: left out: materials but their names' || fail "kerf-sim says nothing of materials"
+  # Units: a part of 40 mm weighs what it weighs.
+  mass() { /usr/bin/python3 -c 'import json, sys; d = open(sys.argv[1], "rb").read(); n = int.from_bytes(d[12:16], "little"); print(*sorted("%.4g" % m["extensions"]["OMI_physics_body"]["motion"]["mass"] for m in json.loads(d[20:20 + n])["nodes"] if "motion" in m.get("extensions", {}).get("OMI_physics_body", {})))' "$1"; }
+  awk '/^ *vertex/ { print "vertex", 40 * $2, 40 * $3, 40 * $4; next } { print }' "$cases/stl/ascii-lead.stl" >part.stl
+  said "part.stl: states no unit; one is taken as a metre, and --unit" kerf-pieces part.stl --physics omi --density 2500 -o m.glb
+  quietly kerf-pieces part.stl --physics omi --density 2500 --unit mm -o mm.glb
+  [ "$(mass m.glb) $(mass mm.glb)" = "1.6e+08 0.16" ] || fail "masses: $(mass m.glb) $(mass mm.glb)"
+  [ "$(size mm.glb)" = "; 0.04 × 0.04 × 0.04" ] || fail "mm.glb: $(size mm.glb)"
+  quietly kerf-pieces part.stl --unit mm --density 2500 -o mm.usda
+  grep -q 'metersPerUnit = 0.001' mm.usda && grep -q 'physics:mass = 0.16' mm.usda || fail "mm.usda: $(grep -e Unit -e mass mm.usda)"
+  quietly kerf-repair -q part.stl --unit mm -o part.ply
+  quietly kerf-crack part.ply --jagged 0.01 -o again.ply
+  quietly kerf-pieces again.ply --physics omi --density 2500 -o again.glb
+  [ "$(mass again.glb)" = 0.16 ] || fail "the unit of a .ply: $(mass again.glb)"
+  kerf-info --json again.ply | grep -q '"unit":0.001' || fail "kerf-info has no unit"
+  said "part.obj: left out: the unit" kerf-crack part.ply --jagged 0.01 -o part.obj
+  expect 2 "'lightyear' is no unit of length; give one of m, cm, mm" kerf-pieces part.stl --unit lightyear -o x.glb
+  printf '[body]\nmesh = "part.ply"\nspacing = 0.02\n[time]\nframes = 1\n' >part.toml
+  kerf-sim part.toml --set body.spacing=15 -o large 2>&1 | grep -q 'part.ply: states a unit of 0.001 m, but a scene is in metres; give the body scale = 0.001$' || fail "kerf-sim says nothing of a unit"
+  kerf-sim part.toml --set body.scale=0.001 -o small 2>&1 | grep -q 'states a unit' && fail "kerf-sim speaks of the unit of a scaled body"
+  [ "$(size small/frames/frame_0000.ply)" = "; 0.04 × 0.04 × 0.04" ] || fail "a scaled body: $(size small/frames/frame_0000.ply)"
+  # Far from the origin: an offset on the root, said once.
+  awk '/^ *vertex/ { printf "vertex %.9f %.9f %.9f\n", 691234.5678 + $2, 5401234.5678 + $3, 512.3 + $4; next } { print }' "$cases/stl/ascii-lead.stl" >far.stl
+  said "far.glb: the model is far from the origin; the root node moves the pieces by (6.912e+05, 5.401e+06, 512.8)" kerf-pieces far.stl -o far.glb
+  [ "$(size far.glb)" = "; 1 × 1 × 1" ] || fail "far.glb: $(size far.glb)"
+  said "far.usda: the model is far from the origin" kerf-pieces far.stl --unit m -o far.usda
+  printf '[body]\nmesh = "far.stl"\nspacing = 0.3\n[time]\nframes = 1\n' >far.toml
+  kerf-sim far.toml -o far-run 2>&1 | grep -q 'the root of run.usda moves them by (6.912e+05, 5.401e+06, 512.8)' || fail "kerf-sim says nothing of an offset"
+  grep -q 'double3 xformOp:translate = (691235' far-run/run.usda || fail "run.usda has no offset"
+  ;;
 scores)
   kerf-model block --edge 0.25 -o block.ply
   for pattern in planes crossing voronoi radial glass wood bricks; do
@@ -275,12 +348,12 @@ chunks)
   # Crumbs join, clusters are nodes, and USD is the same for any number of threads.
   kerf-pieces broken.ply --least 0.07 --levels 3 --physics khr --json --bonds levels.json -o levels.glb >levels.txt
   python3 "$here/check_levels.py" levels.glb levels.json levels.txt "$volume" 0.07 || fail "the hierarchy"
-  quietly kerf-pieces broken.ply --least 0.07 --levels 3 -o levels.usda
-  quietly kerf-pieces -j1 broken.ply --least 0.07 --levels 3 -o one.usda
+  quietly kerf-pieces broken.ply --unit m --least 0.07 --levels 3 -o levels.usda
+  quietly kerf-pieces -j1 broken.ply --unit m --least 0.07 --levels 3 -o one.usda
   cmp levels.usda one.usda || fail "threads change USD"
   # A part without a bond stays, however small, and is reported.
   kerf-model sphere --frequency 2 -o ball.ply
-  quietly kerf-pieces ball.ply --least 0.9 --levels 2 -o ball.usda
+  quietly kerf-pieces ball.ply --unit m --least 0.9 --levels 2 -o ball.usda
   python3 - <<'PYTHON'
 rows = {"v": [], "f": []}
 for scale, shift in ((1, 0), (0.01, 5)):

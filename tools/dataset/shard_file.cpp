@@ -4,6 +4,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include <kerf/export.h>
 #include <kerf/files.h>
 #include "dataset/npz.h"
 
@@ -65,6 +66,13 @@ void add_details(Json& entry, const Fracture& fracture, const std::string& folde
   }
 }
 
+// Whether points, three numbers each, are near enough to the origin for single precision.
+bool fits_single(const std::vector<double>& points) {
+  geo::Box3 box;
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3) box.add({points[i], points[i + 1], points[i + 2]});
+  return geo::single_precision_offset(box).isZero(0);
+}
+
 }  // namespace
 
 void write_archive(std::ostream& out, const std::vector<Outcome>& outcomes, bool single) {
@@ -80,7 +88,7 @@ void write_archive(std::ostream& out, const std::vector<Outcome>& outcomes, bool
   add("piece_vertices", a.piece_vertices), add("piece_faces", a.piece_faces);
   add("piece_volume", a.volume), add("piece_centroid", a.centroid, 3);
   add("piece_rotation", a.rotation, 4), add("piece_translation", a.translation, 3);
-  if (single)
+  if (single && fits_single(a.vertices))
     add("vertices", std::vector<float>(a.vertices.begin(), a.vertices.end()), 3);
   else
     add("vertices", a.vertices, 3);

@@ -20,6 +20,7 @@ struct Outcome {
 };
 
 /// Writes the fractures of a shard as a NumPy archive (docs/datasets.md lists its arrays).
+/// `single`: vertices in single precision, unless the model is too far from the origin for that.
 void write_archive(std::ostream& out, const std::vector<Outcome>& outcomes, bool single);
 
 /// Writes the pieces of a fracture as piece_0.ply, piece_1.ply … into a folder that exists. The

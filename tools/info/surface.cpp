@@ -53,7 +53,8 @@ std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& op
                                            counted(cracks, "triangle") + (front_edges > 0 ? " that ends inside" : "")
                                      : "") +
                     (pieces > 0 ? ", " + counted(pieces, "piece") : "") + "; " + rounded(size.x()) + " × " +
-                    rounded(size.y()) + " × " + rounded(size.z()) + ", volume " + rounded(volume) + "." +
+                    rounded(size.y()) + " × " + rounded(size.z()) + ", volume " + rounded(volume) +
+                    (mesh.unit > 0 && mesh.unit != 1 ? ", unit " + rounded(mesh.unit) + " m" : "") + "." +
                     (file.fronts.empty() ? "" : " " + counted(file.fronts.size(), "front") + " can go on.");
   report.add_text("kind", "surface");
   report.add("vertices", mesh.vertices.size());
@@ -67,6 +68,7 @@ std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& op
   report.add("self_intersections", result.self_intersections ? std::to_string(*result.self_intersections) : "null");
   report.add_number("volume", volume);
   report.add_number("area", geo::area(mesh));
+  if (mesh.unit > 0) report.add_number("unit", mesh.unit);
   report.add("front_edges", front_edges);
   report.add("degenerate_faces", result.degenerate_faces);
   report.add("fronts", file.fronts.size());

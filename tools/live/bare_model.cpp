@@ -43,6 +43,7 @@ sim::Setup bare_model(const std::string& path, int nodes, char up, const geo::Sc
   const std::string bytes = geo::read_all(path);
   geo::TriangleMesh mesh = tool::parse_solid(bytes, path).mesh;
   tool::require_whole(mesh, path, "a scene begins with whole models");
+  mesh.attributes.library = {};  // each frame would hold its images
   sim::Setup setup;
   setup.scene = geo::parse_scene(scene_of(mesh, path, nodes, up), path, overrides);
   setup.models = geo::place_models(setup.scene, {std::move(mesh)});

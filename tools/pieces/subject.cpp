@@ -5,6 +5,7 @@
 
 #include <kerf/body_file.h>
 #include "model.h"
+#include "tool.h"
 
 namespace pieces {
 namespace {
@@ -66,7 +67,7 @@ Subject read_subject(const std::string& given, bool repair) {
     subject.complex = geo::parse_body(bytes, path).surface;  // bodies have no attributes
     return subject;
   }
-  geo::SurfaceFile file = geo::parse_surface(bytes, path);
+  geo::SurfaceFile file = tool::parse_surface(bytes, path);
   if (is_deformed(file.mesh)) {
     subject.moved = material_points(file.mesh, path);
     subject.moved.swap(file.mesh.vertices);

@@ -52,6 +52,7 @@ Setup read_setup(const std::string& path, const geo::SceneOverrides& overrides) 
     const std::string bytes = geo::read_all(body.mesh);
     meshes.push_back(tool::parse_solid(bytes, body.mesh).mesh);
     tool::require_whole(meshes.back(), body.mesh, "a scene begins with whole models");
+    tool::for_scene(meshes.back(), body.mesh, body.scale);
     hashes += " " + std::to_string(geo::fingerprint(bytes));
   }
   setup.fingerprint = geo::fingerprint(hashes);

@@ -8,6 +8,7 @@
 #include <kerf/error.h>
 #include <kerf/files.h>
 #include "kind.h"
+#include "tool.h"
 
 namespace view {
 namespace {
@@ -72,7 +73,7 @@ void add(Subject& subject, const std::string& path) {
     }
     case tool::Kind::surface:
       if (!subject.surface.triangles.empty()) refuse("a surface");
-      subject.surface = geo::parse_surface(bytes, path).mesh;
+      subject.surface = tool::parse_surface(bytes, path).mesh;
       if (const auto beside = obstacles_of(path); !beside.empty()) subject.obstacles = geo::read_surface(beside).mesh;
       break;
   }

@@ -44,10 +44,25 @@ void write_json(std::ostream& out, const KerfFile& file);
 struct ChunkLabels {
   std::string kind = "file";              ///< key of the names: "file" or "node"
   std::vector<std::string> names;         ///< per piece
-  double strength = 1;                    ///< force per unit of area that a bond withstands
+  double strength = 1;                    ///< force per square metre that a bond withstands
   std::vector<ClusterLevel> levels = {};  ///< clusters of the pieces, see make_hierarchy(); may be empty
-  double density = 1000;                  ///< mass per unit of volume, where rigid bodies are written
+  double density = 1000;                  ///< mass per cubic metre, where rigid bodies are written
 };
+
+/// Pieces with what is written about them.
+struct PieceSet {
+  std::vector<Chunk> chunks;
+  std::vector<Bond> bonds;
+  ChunkLabels labels;
+};
+/// The same pieces in metres, by the unit of their meshes. Without a unit, one is a metre.
+PieceSet in_metres(const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds, const ChunkLabels& labels);
+/// The point that writers of single-precision numbers subtract from coordinates; zero where it is
+/// not needed. The nearest single-precision number to the centre of the box, where a coordinate is
+/// farther from the origin than 64 diagonals of the box.
+Vec3 single_precision_offset(const Box3& box);
+/// The box around the meshes of some pieces.
+Box3 bounding_box(const std::vector<Chunk>& chunks);
 
 /// Name of a piece in written files: piece_000, piece_001 …
 std::string piece_name(std::size_t piece);
@@ -58,8 +73,10 @@ std::string cluster_name(std::size_t level, std::size_t cluster);
 
 /// Writes `{"pieces": [{kind, "volume", "centroid", "triangles"}], "bonds": [{"a", "b", "area",
 /// "normal", "centroid", "strength", "torque"}]}`. Torque: of bending, at which the stress at the
-/// edge of the wall is the strength. With clusters a piece has a "parent", and there are `"levels":
-/// [{"clusters": [{"name", "volume", "centroid", "parent"}], "bonds": […]}]`, fine to coarse.
+/// edge of the wall is the strength. Lengths, areas and volumes are in model units. Where the
+/// meshes state a unit that is no metre, strength is in N, torque in N m, and "unit" has its
+/// metres. With clusters a piece has a "parent", and there are `"levels": [{"clusters": [{"name",
+/// "volume", "centroid", "parent"}], "bonds": […]}]`, fine to coarse.
 void write_bonds(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                  const ChunkLabels& labels);
 
@@ -84,13 +101,15 @@ struct GlbOptions {
 /// Clusters are nodes between root and pieces. Normals are the mesh's. Without them, and on cracks,
 /// a corner's normal is the mean over triangles around it that differ by less than 45°, weighted by
 /// area. Colours are converted to linear ones, as glTF requires. Hulls have a name that ends with
-/// hull_suffix(). The scene's `extras` hold what write_bonds() writes. Coordinates are in single
-/// precision, relative to each centroid. Triangles without patch are skin, corners without texture
-/// coordinates have (0, 0), a chunk without groups has one, "skin". Throws InputError for a chunk
-/// without triangles.
+/// hull_suffix(). The scene's `extras` hold what write_bonds() writes. Lengths are in metres, as
+/// glTF requires, by the unit of the meshes. Coordinates are in single precision, relative to each
+/// centroid. Far from the origin the root has single_precision_offset() as its translation. Groups
+/// with a material in the mesh's library get it, with its images. Triangles without patch are skin,
+/// corners without texture coordinates have (0, 0), a chunk without groups has one, "skin". Throws
+/// InputError for a chunk without triangles.
 ///
 /// With physics each piece is a dynamic body with exact mass and inertia, and its hulls are its
-/// collision shapes; model units are metres. Hulls with plain names then are no meshes of nodes, so
+/// collision shapes. Hulls with plain names then are no meshes of nodes, so
 /// they are not drawn.
 void write_glb(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                const ChunkLabels& labels, const GlbOptions& options = {});
@@ -105,9 +124,10 @@ struct UsdOptions {
 
 /// Writes pieces as USD text with the schema UsdPhysics: a mesh for each piece, which is a rigid
 /// body with exact mass and inertia; clusters above them; and a fixed joint for each bond, which
-/// breaks at its strength (breakForce) and torque (breakTorque). Model units are metres. Meshes
-/// have normals as in write_glb(), texture coordinates, patches, and a subset and a material for
-/// each group. Throws InputError for a chunk without triangles.
+/// breaks at its strength (breakForce) and torque (breakTorque). Coordinates are the model's, and
+/// `metersPerUnit` is its unit. The root's translation is single_precision_offset(). Meshes have
+/// normals as in write_glb(), texture coordinates, patches, and a subset and a material for each
+/// group. Throws InputError for a chunk without triangles.
 void write_usd_pieces(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                       const ChunkLabels& labels, const UsdOptions& options = {});
 
@@ -132,7 +152,8 @@ struct UsdRun {
 /// Writes a run as USD text (Universal Scene Description). The mesh /run/body has a time sample of
 /// points for each frame, and of its triangles where they change; texture coordinates where the
 /// surface has them; skin and cracks as subsets bound to two materials; and the crack of each
-/// triangle as primvars:patch. Obstacles are the mesh /run/obstacles.
+/// triangle as primvars:patch. Obstacles are the mesh /run/obstacles. Far from the origin /run has
+/// single_precision_offset() of the first frame as its translation.
 void write_usda(std::ostream& out, const UsdRun& run);
 
 }  // namespace geo

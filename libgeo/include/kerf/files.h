@@ -105,7 +105,16 @@ void discard_temporary_outputs();
 struct SurfaceFile {
   TriangleMesh mesh;
   std::vector<FrontState> fronts;
+  /// Lines that say what the reader left out or assumed, without the file's name: "left out: 2
+  /// cameras". Tools print them to standard error.
+  std::vector<std::string> notes = {};
 };
+
+/// The metres of a unit of length: "m", "cm", "mm", "um", "km", "in", "ft", "yd", or their English
+/// names ("millimeter", "inches"). Empty for any other text.
+std::optional<double> length_unit(std::string_view name);
+/// The signs that length_unit() knows, for messages: "m, cm, …".
+std::string length_unit_names();
 
 /// Reads a surface from a file, or from standard input where `path` is "-". The format is
 /// recognised by content, some by the ending of the path; unknown content is read as STL. Polygons
@@ -113,7 +122,7 @@ struct SurfaceFile {
 /// place are merged unless the mesh has sites. Formats of other programs (docs/formats.md) are read
 /// by assimp in a child process. Files that they name must be in the folder of `path` or below.
 /// Throws InputError, with the line or entry: malformed data, numbers that are not finite, indices
-/// out of range, sizes larger than the file, trailing bytes.
+/// out of range, sizes larger than the file.
 SurfaceFile read_surface(const std::string& path);
 /// The same from bytes in memory; `name` stands for the file in messages.
 SurfaceFile parse_surface(const std::string& bytes, const std::string& name);
@@ -168,7 +177,7 @@ struct FrameNodes {
   NodeSet nodes;               ///< deformed positions; radius, spacing and volume of the undeformed material
   std::vector<double> stress;  ///< per node, von Mises, Pa
 };
-/// Writes a node file (binary PLY, single precision) with the stress as a further property.
+/// Writes a node file (binary PLY, single precision where that is enough) with the stress as well.
 void write_frame_nodes(std::ostream& out, const FrameNodes& frame);
 /// Reads such a file; `name` stands for it in messages. Throws InputError for any other file.
 FrameNodes parse_frame_nodes(const std::string& bytes, const std::string& name);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,19 +17,32 @@ namespace geo {
 
 using Color = Eigen::Vector4d;  ///< red, green, blue, alpha; 0 … 1
 
+/// Materials with their images, as a .glb (glTF 2.0) without nodes and meshes: a material for each
+/// of some groups, with the group's name. It goes unchanged from a .glb that is read to one that is
+/// written. Copies share the bytes.
+struct MaterialLibrary {
+  std::shared_ptr<const std::string> glb;  ///< null: none
+  /// Whether both have equal bytes, or none.
+  friend bool operator==(const MaterialLibrary& a, const MaterialLibrary& b) {
+    return a.glb == b.glb || (a.glb && b.glb && *a.glb == *b.glb);
+  }
+};
+
 /// Attributes have one value for each corner of each triangle, so that seams and hard edges need no
 /// vertices of their own. Each array is as long as the mesh's list of triangles, or empty.
 struct Attributes {
   std::vector<std::array<Vec2, 3>> uv;
+  std::vector<std::array<Vec2, 3>> uv2;  ///< a second set, as materials of a library use it
   std::vector<std::array<Vec3, 3>> normal;
   std::vector<std::array<Color, 3>> color;
   std::vector<std::int32_t> group;       ///< per triangle: index into group_names
   std::vector<std::string> group_names;  ///< one line of text each
   std::string materials;                 ///< the file that describes materials of these names (OBJ's mtllib), or empty
+  MaterialLibrary library = {};          ///< materials of these names, where a .glb brought them
 
   /// True when no array has values.
-  bool empty() const { return uv.empty() && normal.empty() && color.empty() && group.empty(); }
-  /// Names of the arrays that have values: "uv", "normal", "color", "group".
+  bool empty() const { return uv.empty() && uv2.empty() && normal.empty() && color.empty() && group.empty(); }
+  /// Names of the arrays that have values: "uv", "uv2", "normal", "color", "group".
   std::vector<std::string> names() const;
   /// Whether all values are equal.
   friend bool operator==(const Attributes&, const Attributes&) = default;
@@ -46,6 +60,7 @@ struct TriangleMesh {
   /// the triangle belongs to a crack. Empty array: unknown.
   std::vector<std::uint32_t> source;
   Attributes attributes;
+  double unit = 0;  ///< the metres that one unit of its coordinates is; 0: nothing says so
   /// Whether this is a two-sided surface.
   bool two_sided() const { return !site.empty(); }
 };

@@ -1,0 +1,202 @@
+// io/gltf_materials.h. Descriptions are copied as JSON, so that what this code does not know is
+// kept; only indices of textures, samplers and images change.
+#include "io/gltf_materials.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <sstream>
+
+#include "io/shown.h"
+
+namespace geo {
+namespace {
+
+using Json = GlbFile::Json;
+using namespace nlohmann::literals;
+
+// Calls `change` for each object of a description, at any depth, with the key that it has.
+void for_each_object(Json& value, const std::string& key,
+                     const std::function<void(Json&, const std::string&)>& change) {
+  if (value.is_object()) change(value, key);
+  if (value.is_structured())
+    for (auto& [inner, entry] : value.items()) for_each_object(entry, inner, change);
+}
+
+bool names_texture(const std::string& key) { return key.ends_with("Texture") || key.ends_with("texture"); }
+
+// The type of an image by its first bytes; empty: unknown.
+std::string media_type(std::string_view bytes) {
+  if (bytes.starts_with("\x89PNG")) return "image/png";
+  if (bytes.starts_with("\xff\xd8")) return "image/jpeg";
+  if (bytes.starts_with("\xabKTX 20")) return "image/ktx2";
+  if (bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "image/webp";
+  return {};
+}
+
+// Numbers entries in the order in which they are first named.
+class Numbers {
+ public:
+  std::size_t of(std::size_t old) {
+    const auto [at, fresh] = numbers_.try_emplace(old, order_.size());
+    if (fresh) order_.push_back(old);
+    return at->second;
+  }
+  // The old numbers in the order of the new ones; may grow while it is walked.
+  const std::vector<std::size_t>& order() const { return order_; }
+
+ private:
+  std::map<std::size_t, std::size_t> numbers_;
+  std::vector<std::size_t> order_;
+};
+
+std::size_t index_in(const GltfDocument& document, const Json& value, const char* list) {
+  if (!value.is_number_unsigned() || value.get<std::size_t>() >= document.count(list))
+    document.fail(std::string("has a material that names an entry of its '") + list + "' that is not there");
+  return value.get<std::size_t>();
+}
+
+// The names of extensions that some descriptions have.
+std::vector<std::string> extensions_in(Json& descriptions) {
+  std::vector<std::string> names;
+  for_each_object(descriptions, "", [&](Json& object, const std::string& key) {
+    if (key != "extensions") return;
+    for (const auto& entry : object.items())
+      if (std::find(names.begin(), names.end(), entry.key()) == names.end()) names.push_back(entry.key());
+  });
+  return names;
+}
+
+// Writes the descriptions that are listed into `file`. `to_texture`, `to_sampler` and `to_image`
+// number the textures, samplers and images, which are written as they are named.
+class Copier {
+ public:
+  Copier(GltfDocument& from, GlbFile& to) : from_(from), to_(to) {
+    textures_before_ = list("textures").size();
+    samplers_before_ = list("samplers").size();
+    images_before_ = list("images").size();
+  }
+
+  void add_material(std::size_t material, const std::string& name, std::size_t uv_sets) {
+    Json description = from_.entry("materials", material);
+    description["name"] = name;
+    for_each_object(description, "", [&](Json& object, const std::string&) { drop_textures(object, uv_sets); });
+    for_each_object(description, "", [&](Json& object, const std::string& key) {
+      if (names_texture(key) && object.contains("index"))
+        object["index"] = textures_before_ + textures_.of(index_in(from_, object["index"], "textures"));
+    });
+    list("materials").push_back(std::move(description));
+  }
+
+  /// Uses of textures that were left out.
+  std::size_t dropped() const { return dropped_; }
+
+  // Writes what the materials name.
+  void finish() {
+    for (std::size_t i = 0; i < textures_.order().size(); ++i) add_texture(textures_.order()[i]);
+    for (std::size_t i = 0; i < samplers_.order().size(); ++i)
+      list("samplers").push_back(Json(from_.entry("samplers", samplers_.order()[i])));
+    for (std::size_t i = 0; i < images_.order().size(); ++i) add_image(images_.order()[i]);
+    for (const char* name : {"textures", "samplers", "images"})
+      if (list(name).empty()) to_.json.erase(name);
+    name_extensions();
+  }
+
+ private:
+  Json& list(const char* name) {
+    Json& entries = to_.json[name];
+    if (entries.is_null()) entries = Json::array();
+    return entries;
+  }
+
+  // Removes uses of textures, among the members of an object, whose texture coordinates are not
+  // there.
+  void drop_textures(Json& object, std::size_t uv_sets) {
+    std::vector<std::string> gone;
+    for (const auto& [key, use] : object.items()) {
+      if (!names_texture(key) || !use.is_object() || !use.contains("index")) continue;
+      Json set = use.value("texCoord", Json(0u));
+      if (use.contains("/extensions/KHR_texture_transform/texCoord"_json_pointer))
+        set = use["extensions"]["KHR_texture_transform"]["texCoord"];
+      if (!set.is_number_unsigned() || set.get<std::size_t>() >= uv_sets) gone.push_back(key);
+    }
+    for (const std::string& key : gone) object.erase(key);
+    dropped_ += gone.size();
+  }
+
+  void add_texture(std::size_t texture) {
+    Json description = from_.entry("textures", texture);
+    if (description.contains("sampler"))
+      description["sampler"] = samplers_before_ + samplers_.of(index_in(from_, description["sampler"], "samplers"));
+    // Extensions name an image in another format beside, or in place of, that of the texture
+    // itself.
+    for_each_object(description, "", [&](Json& object, const std::string&) {
+      if (object.contains("source"))
+        object["source"] = images_before_ + images_.of(index_in(from_, object["source"], "images"));
+    });
+    list("textures").push_back(std::move(description));
+  }
+
+  void add_image(std::size_t image) {
+    const GltfDocument::Json& description = from_.entry("images", image);
+    const auto view = from_.index(description, "bufferView");
+    const std::string bytes =
+        view ? std::string(from_.view(*view)) : from_.at_uri(GltfDocument::text(description, "uri"));
+    std::string type = media_type(bytes);
+    if (type.empty()) type = GltfDocument::text(description, "mimeType");
+    if (type.empty())
+      from_.fail("has image " + std::to_string(image) + " of an unknown format; save it as PNG or JPEG");
+    Json written = {{"bufferView", to_.bytes(bytes)}, {"mimeType", type}};
+    const std::string name = GltfDocument::text(description, "name");
+    if (!name.empty()) written["name"] = name;
+    list("images").push_back(std::move(written));
+  }
+
+  // Extensions of materials and textures are used; required is what the source requires of them.
+  void name_extensions() {
+    Json described = {{"materials", list("materials")}};
+    if (to_.json.contains("textures")) described["textures"] = to_.json["textures"];
+    for (const std::string& name : extensions_in(described)) {
+      const auto add = [&](const char* key) {
+        Json& names = list(key);
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      };
+      add("extensionsUsed");
+      const GltfDocument::Json& required = GltfDocument::member(from_.json(), "extensionsRequired");
+      if (required.is_array() && std::find(required.begin(), required.end(), name) != required.end())
+        add("extensionsRequired");
+    }
+  }
+
+  GltfDocument& from_;
+  GlbFile& to_;
+  std::size_t textures_before_, samplers_before_, images_before_, dropped_ = 0;
+  Numbers textures_, samplers_, images_;
+};
+
+}  // namespace
+
+GltfLibrary materials_of(GltfDocument& document, const std::vector<GltfGroup>& groups, std::size_t uv_sets) {
+  GlbFile library;
+  library.json = {{"asset", {{"version", "2.0"}, {"generator", "kerf"}}}};
+  Copier copier(document, library);
+  for (const GltfGroup& group : groups) copier.add_material(group.material, group.name, uv_sets);
+  copier.finish();
+  std::ostringstream out;
+  library.write(out);
+  return {std::move(out).str(), copier.dropped()};
+}
+
+std::vector<std::string> add_materials(GlbFile& file, const std::string& materials) {
+  GltfDocument library(materials, "the materials of the surface");
+  Copier copier(library, file);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < library.count("materials"); ++i) {
+    names.push_back(GltfDocument::text(library.entry("materials", i), "name"));
+    copier.add_material(i, names.back(), ~std::size_t(0));
+  }
+  copier.finish();
+  return names;
+}
+
+}  // namespace geo

@@ -32,7 +32,7 @@ std::pair<Shared, geo::RepairStats> repaired(const Mesh& self, double weld, bool
   if (!(weld >= 0 && weld <= geo::largest_coordinate)) throw geo::InputError("repair: weld must be 0 or more");
   return without_gil([&] {
     auto mesh = self.mesh;
-    const auto stats = geo::repair(mesh, weld, smooth);
+    const auto stats = geo::repair(mesh, {weld, smooth});
     return std::pair{std::make_shared<Mesh>(std::move(mesh)), stats};
   });
 }

@@ -176,13 +176,6 @@ RunModels models_of(const geo::Scene& scene, const Meshes& given) {
   }
   out.fingerprint = geo::fingerprint(hashes);
   out.placed = geo::place_models(scene, std::move(meshes));
-  if (out.placed.bodies.size() > 1) {
-    try {
-      geo::require_solid(out.placed.all);
-    } catch (const geo::InputError& e) {
-      throw geo::InputError(std::string("the placed bodies, taken together: ") + e.what());
-    }
-  }
   return out;
 }
 

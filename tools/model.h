@@ -39,8 +39,8 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
 
-/// What a repair decided about shells, and the option of kerf-repair that decides otherwise; empty where
-/// there was nothing to decide.
+/// Words for what a repair decided about shells, and the option of kerf-repair that decides
+/// otherwise; empty where there was nothing to decide.
 inline std::string shell_decisions(const geo::RepairStats& done) {
   std::string text;
   const auto add = [&](std::size_t n, const std::string& verb) {
@@ -57,8 +57,8 @@ inline std::string shell_decisions(const geo::RepairStats& done) {
   return text;
 }
 
-/// Repairs a plain surface, as kerf-repair does without options, and says what it decided about shells.
-/// Throws InputError where the result is no solid.
+/// Repairs a plain surface, as kerf-repair does without options, and says what it decided about
+/// shells. Throws InputError where the result is no solid.
 inline void repair_plain(geo::TriangleMesh& mesh, const std::string& path, const Say& say) {
   if (mesh.two_sided()) return;
   geo::SolidRepairStats done;

@@ -170,7 +170,8 @@ int compare_angle(const Vec3& u, const Vec3& v, const Vec3& zero, const Vec3& a,
 
 int volume_sign(std::span<const std::array<Vec3, 3>> triangles) {
   if (triangles.empty()) return 0;
-  // Volumes of tetrahedra with a common apex on the surface, so that coordinates far from 0 do no harm.
+  // Volumes of tetrahedra with a common apex on the surface, so that coordinates far from 0 do no
+  // harm.
   const Vec3 apex = triangles[0][0];
   double sum = 0, permanent = 0;
   for (const auto& corners : triangles) {
@@ -180,8 +181,9 @@ int volume_sign(std::span<const std::array<Vec3, 3>> triangles) {
     permanent += a.cwiseAbs().dot(
         Vec3(u.y() * v.z() + u.z() * v.y(), u.z() * v.x() + u.x() * v.z(), u.x() * v.y() + u.y() * v.x()));
   }
-  // Rounding, relative to the permanent, with ε = 2⁻⁵³: 3 ε of the differences, 5 ε of a determinant, n ε
-  // of the sum, and as much for the permanent's own sum. 2⁻⁵² (n + 8) bounds all of it.
+  // Rounding, relative to the permanent, with ε = 2⁻⁵³: 3 ε of the differences, 5 ε of a
+  // determinant, n ε of the sum, and as much for the permanent's own sum. 2⁻⁵² (n + 8) bounds all
+  // of it.
   const double bound = 0x1p-52 * (double(triangles.size()) + 8) * permanent;
   if (permanent > filter_smallest && permanent < filter_largest && std::abs(sum) > bound) return sum > 0 ? 1 : -1;
   using Exact = CGAL::Exact_rational;

@@ -1,6 +1,6 @@
 // read_volume(), wrapped(), wrapped_solid() and write_level_set() of kerf/files.h. Through OpenVDB:
-// volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set from a closed surface,
-// meshToUnsignedDistanceField() distances from open sheets.
+// volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set from a closed
+// surface, meshToUnsignedDistanceField() distances from open sheets.
 #include "kerf/files.h"
 
 #include <openvdb/io/Stream.h>
@@ -11,11 +11,14 @@
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
+#include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "geometry/bvh.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
+#include "kerf/parallel.h"
 #include "surface/shells.h"
 
 namespace geo {
@@ -76,8 +79,8 @@ TriangleMesh surface_of(const Grid& grid, const VolumeOptions& options, const st
   return mesh;
 }
 
-// The triangles of one mesh after those of another. Both have the same arrays of attributes, unless one is
-// empty.
+// The triangles of one mesh after those of another. Both have the same arrays of attributes, unless
+// one is empty.
 TriangleMesh joined(TriangleMesh to, const TriangleMesh& from) {
   if (to.triangles.empty()) return from;
   const auto first = static_cast<std::uint32_t>(to.vertices.size());
@@ -92,8 +95,8 @@ TriangleMesh joined(TriangleMesh to, const TriangleMesh& from) {
   return to;
 }
 
-// The shells that voxels of this edge do not resolve: those of a smaller mean thickness, which is twice the
-// volume over the area.
+// The shells that voxels of this edge do not resolve: those of a smaller mean thickness, which is
+// twice the volume over the area.
 TriangleMesh thin_shells(const TriangleMesh& closed, double voxel) {
   TriangleMesh thin;
   thin.vertices = closed.vertices;
@@ -122,8 +125,9 @@ TriangleMesh in_voxels(const TriangleMesh& mesh, const Vec3& middle, double voxe
   return scaled;
 }
 
-// A level set of plates around triangles, which reach `offset` voxels to both sides. Distances are linear
-// but at the triangles themselves, so that with an offset of a voxel or more interpolation is exact.
+// A level set of plates around triangles, which reach `offset` voxels to both sides. Distances are
+// linear but at the triangles themselves, so that with an offset of a voxel or more interpolation
+// is exact.
 FloatGrid::Ptr plate_of(const TriangleMesh& sheets, double offset) {
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
@@ -138,12 +142,38 @@ FloatGrid::Ptr plate_of(const TriangleMesh& sheets, double offset) {
   return grid;
 }
 
-// The surface around closed parts and open sheets, without attributes. Where there are sheets, voxels have
-// half the edge, so that a plate is two of them thick.
+// Halves the distance of vertices from the triangles that a plate is around.
+void halve_plate(TriangleMesh& plate, const TriangleMesh& sheets) {
+  const TriangleBvh tree(corners_of(sheets));
+  parallel_for(plate.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Vec3& p = plate.vertices[v];
+      p = (p + tree.closest(p).point) / 2;
+    }
+  });
+}
+
+// Plates as voxels of their own thickness make them: twice as thick at first. Nothing where they
+// cross then, as in folds narrower than a voxel.
+std::optional<TriangleMesh> coarse_plate(const TriangleMesh& sheets, double voxel) {
+  const Vec3 middle = bounding_box(sheets).center();
+  const TriangleMesh scaled = in_voxels(sheets, middle, voxel);
+  TriangleMesh mesh = surface_of(*plate_of(scaled, 1), {}, "the level set");
+  halve_plate(mesh, scaled);
+  for (Vec3& p : mesh.vertices) p = middle + voxel * p;
+  return check_surface(mesh, true).good() ? std::optional(std::move(mesh)) : std::nullopt;
+}
+
+// The surface around closed parts and open sheets, without attributes. Where there are sheets,
+// voxels have half the edge, so that a plate is two of them thick.
 TriangleMesh surface_around(const TriangleMesh& closed, TriangleMesh sheets, double voxel) {
   openvdb::initialize();
   sheets = joined(std::move(sheets), thin_shells(closed, voxel));
   const bool plates = !sheets.triangles.empty();
+  // Half voxels of more sheets than this take gigabytes.
+  constexpr double most = 1 << 22;
+  if (plates && closed.triangles.empty() && area(sheets) / (voxel * voxel / 4) > most)
+    if (auto mesh = coarse_plate(sheets, voxel)) return std::move(*mesh);
   const double edge = plates ? voxel / 2 : voxel;
   const Vec3 middle = bounding_box(joined(closed, sheets)).center();
   FloatGrid::Ptr grid;

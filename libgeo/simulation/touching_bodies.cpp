@@ -1,5 +1,5 @@
-// Per pair of near triangles a direction separates them best (separating axis). The vertices that lie
-// foremost along it move back by half of what the gap lacks.
+// Per pair of near triangles a direction separates them best (separating axis). The vertices that
+// lie foremost along it move back by half of what the gap lacks.
 #include "simulation/touching_bodies.h"
 
 #include <algorithm>
@@ -36,13 +36,14 @@ struct Assembly {
 
 std::string name_of(const Scene& scene, std::uint32_t body) {
   const SceneBody& b = scene.bodies[body];
-  const std::string shown = b.name.empty() ? std::filesystem::path(b.mesh).filename().string() : b.name;
-  return "body " + std::to_string(body + 1) + (shown.empty() ? std::string() : " ('" + shown + "')");
+  const std::string name = b.name.empty() ? "body " + std::to_string(body + 1) : b.name;
+  const std::string file = std::filesystem::path(b.mesh).filename().string();
+  return name + (file.empty() ? std::string() : " (" + file + ")");
 }
 
 std::string in_words(double length) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", length);
+  std::snprintf(text, sizeof text, "%.2g", length);
   return text;
 }
 
@@ -96,8 +97,8 @@ struct Axis {
   double separation = -std::numeric_limits<double>::infinity();
 };
 
-// The direction that separates two triangles best. A direction is allowed where both triangles retreat into
-// their own bodies along it. Normals come first among equals: they keep faces flat.
+// The direction that separates two triangles best. A direction is allowed where both triangles
+// retreat into their own bodies along it. Normals come first among equals: they keep faces flat.
 Axis best_axis(const Corners& s, const Corners& t, double tolerance) {
   const Vec3 normal_s = face_normal(s[0], s[1], s[2]), normal_t = face_normal(t[0], t[1], t[2]);
   Axis best;
@@ -126,35 +127,35 @@ Axis best_axis(const Corners& s, const Corners& t, double tolerance) {
 }
 
 // A vertex is to move by at least `amount` along `direction`.
-struct Wish {
+struct Constraint {
   Vec3 direction;
   double amount;
 };
-using Wishes = std::map<std::uint32_t, std::vector<Wish>>;
+using Constraints = std::map<std::uint32_t, std::vector<Constraint>>;
 
-// The shortest known offset that fulfils all wishes: projections onto one half space after the other
-// (Agmon 1954).
-Vec3 offset_for(const std::vector<Wish>& wishes) {
+// The shortest known offset that fulfils all constraints: projections onto one half space after the
+// other (Agmon 1954).
+Vec3 offset_for(const std::vector<Constraint>& constraints) {
   Vec3 offset = Vec3::Zero();
-  constexpr int rounds = 64;  // each at least halves what lacks, unless directions oppose each other
+  constexpr int rounds = 64;  // a bound of the effort: the exact test finds what still lacks
   for (int round = 0; round < rounds; ++round)
-    for (const Wish& w : wishes)
+    for (const Constraint& w : constraints)
       if (const double lacking = w.amount - offset.dot(w.direction); lacking > 0) offset += lacking * w.direction;
   return offset;
 }
 
-// Adds a wish, unless the vertex has one of the same direction and at least that amount.
-void add_wish(std::vector<Wish>& wishes, const Wish& wish) {
-  constexpr double same = 1 - 1e-12;  // cosine of about a millionth: offsets differ by less than rounding
-  for (Wish& w : wishes)
-    if (w.direction.dot(wish.direction) > same) {
-      w.amount = std::max(w.amount, wish.amount);
+// Adds a constraint, unless the vertex has one of the same direction and at least that amount.
+void add_constraint(std::vector<Constraint>& constraints, const Constraint& constraint) {
+  constexpr double same = 1 - 1e-12;  // cosine of a millionth: offsets differ by a millionth of the gap
+  for (Constraint& w : constraints)
+    if (w.direction.dot(constraint.direction) > same) {
+      w.amount = std::max(w.amount, constraint.amount);
       return;
     }
-  wishes.push_back(wish);
+  constraints.push_back(constraint);
 }
 
-void collect_wishes(const Assembly& assembly, const AabbTree::Pairs& pairs, Wishes& wishes) {
+void collect_constraints(const Assembly& assembly, const AabbTree::Pairs& pairs, Constraints& constraints) {
   const double gap = assembly.gap;
   for (const auto& [first, second] : pairs) {
     const Corners s = assembly.corners(first), t = assembly.corners(second);
@@ -165,19 +166,19 @@ void collect_wishes(const Assembly& assembly, const AabbTree::Pairs& pairs, Wish
     const double amount = (gap - axis.separation) / 2;
     const double ahead = std::max({m.dot(s[0]), m.dot(s[1]), m.dot(s[2])}),
                  behind = std::min({m.dot(t[0]), m.dot(t[1]), m.dot(t[2])});
-    const auto wish = [&](std::uint32_t v, const Vec3& direction) {
+    const auto constrain = [&](std::uint32_t v, const Vec3& direction) {
       const double moved = direction.dot(assembly.all.vertices[v] - assembly.before[v]);
-      add_wish(wishes[v], {direction, moved + amount});
+      add_constraint(constraints[v], {direction, moved + amount});
     };
     for (std::size_t k = 0; k < 3; ++k) {
-      if (m.dot(s[k]) > ahead - gap) wish(assembly.all.triangles[first][k], -m);
-      if (m.dot(t[k]) < behind + gap) wish(assembly.all.triangles[second][k], m);
+      if (m.dot(s[k]) > ahead - gap) constrain(assembly.all.triangles[first][k], -m);
+      if (m.dot(t[k]) < behind + gap) constrain(assembly.all.triangles[second][k], m);
     }
   }
 }
 
-// Points of a body at which the depth of an overlap is measured: nodes inside, and points on triangles and
-// edges.
+// Points of a body at which the depth of an overlap is measured: nodes inside, and points on
+// triangles and edges.
 std::vector<Vec3> probes_of(const TriangleMesh& body, const TriangleBvh& other) {
   SampleOptions options;
   options.count = 500;
@@ -193,8 +194,8 @@ std::vector<Vec3> probes_of(const TriangleMesh& body, const TriangleBvh& other) 
   return points;
 }
 
-// How far two bodies would have to move to be apart, at least: the largest sum of both distances to the
-// surfaces, over points that are in both.
+// How far two bodies would have to move to be apart, at least: the largest sum of both distances to
+// the surfaces, over points that are in both.
 double depth_of(const TriangleMesh& a, const TriangleMesh& b) {
   const TriangleBvh tree_a(corners_of(a)), tree_b(corners_of(b));
   double depth = 0;
@@ -211,7 +212,8 @@ double depth_of(const TriangleMesh& a, const TriangleMesh& b) {
   if (a > b) std::swap(a, b);
   const std::string names = name_of(assembly.scene, a) + " and " + name_of(assembly.scene, b);
   if (const double depth = depth_of(bodies[a], bodies[b]); depth > assembly.gap)
-    throw InputError(names + " overlap, " + in_words(depth) + " deep; move one of them by at least as much");
+    throw InputError(names + " overlap, about " + in_words(depth) +
+                     " deep; move one of them out of the other until they touch at most");
   throw InputError(names + " touch and cannot be moved apart where they do; leave a gap of " + in_words(assembly.gap) +
                    " between them");
 }
@@ -230,7 +232,8 @@ bool crosses_nothing(const TriangleMesh& mesh) {
   return report.self_intersections == std::size_t(0) && report.degenerate_faces == 0;
 }
 
-// The bodies of the first pair of triangles that cross; triangles of one body cross after an unfit motion.
+// The bodies of the first pair of triangles that cross; triangles of one body cross after an unfit
+// motion.
 std::pair<std::uint32_t, std::uint32_t> first_bodies(const Assembly& assembly, const AabbTree::Pairs& pairs) {
   return {assembly.body_of[pairs[0].first], assembly.body_of[pairs[0].second]};
 }
@@ -242,12 +245,12 @@ void part_touching_bodies(const Scene& scene, PlacedModels& models) {
   for (std::uint32_t b = 0; b < models.bodies.size(); ++b)
     assembly.body_of.resize(assembly.body_of.size() + models.bodies[b].triangles.size(), b);
   const AabbTree::Pairs touching = near_pairs(assembly);
-  Wishes wishes;
+  Constraints constraints;
   AabbTree::Pairs pairs = touching;
   constexpr int rounds = 8;  // a motion may bring a vertex near to a third body; each round sees more of them
   for (int round = 0; round < rounds && !pairs.empty(); ++round) {
-    collect_wishes(assembly, pairs, wishes);
-    for (const auto& [v, list] : wishes) models.all.vertices[v] = assembly.before[v] + offset_for(list);
+    collect_constraints(assembly, pairs, constraints);
+    for (const auto& [v, list] : constraints) models.all.vertices[v] = assembly.before[v] + offset_for(list);
     pairs = near_pairs(assembly);
   }
   if (!pairs.empty() || (!touching.empty() && !crosses_nothing(models.all))) {

@@ -1,5 +1,5 @@
-// Edges, components and rims of a mesh that may be open, and edits of its list of triangles: what repair
-// and the separation of open sheets have in common.
+// Edges, components and rims of a mesh that may be open, and edits of its list of triangles: what
+// repair and the separation of open sheets have in common.
 #pragma once
 
 #include <cstdint>

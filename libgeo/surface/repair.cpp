@@ -198,15 +198,15 @@ void fill_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
   keep(mesh, kept);
 }
 
-// What becomes of a shell.
+// The fate of a shell.
 struct ShellDecision {
   bool kept = true;
   bool outwards = true;      // its orientation in the result
   bool like_around = false;  // in material and oriented like it
 };
 
-// Decides about each shell, those around it first. `level`: winding number inside a shell, relative to
-// the orientation of the outermost shell around it; material is where it is above 0.
+// Decides about each shell, those around it first. `level`: winding number inside a shell, relative
+// to the orientation of the outermost shell around it; material is where it is above 0.
 std::vector<ShellDecision> decide_shells(const std::vector<Shell>& shells, InnerShells inner) {
   std::vector<std::uint32_t> order(shells.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -1,5 +1,5 @@
-// take_sheets() of kerf/check.h. Pairs of triangles that coincide and face each other cancel in a solid,
-// where they are a wall between two parts. In a card they are all that there is.
+// take_sheets() of kerf/check.h. Pairs of triangles that coincide and face each other cancel in a
+// solid, where they are a wall between two parts. In a card they are all that there is.
 #include <algorithm>
 #include <map>
 
@@ -15,8 +15,8 @@ namespace {
 // Whether the orientation is that of ascending vertices, up to rotation.
 bool is_even(const Triangle& t) { return ((t[0] > t[1]) + (t[0] > t[2]) + (t[1] > t[2])) % 2 == 0; }
 
-// Per triangle: whether drop_degenerate() would drop it because its orientation cancels with that of
-// another one. Of those on the same vertices, one is marked.
+// Per triangle: whether drop_degenerate() would drop it because its orientation cancels with that
+// of another one. One of those on the same vertices is marked.
 std::vector<char> cancelled_triangles(const TriangleMesh& mesh) {
   std::map<Triangle, std::pair<int, std::uint32_t>> same;  // sum of orientations, first triangle
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -49,8 +49,8 @@ void append(TriangleMesh& to, const TriangleMesh& from) {
   add(to.attributes.group, from.attributes.group);
 }
 
-// Of cancelled triangles, those that are no wall. A wall is a connected group whose every border edge is
-// an edge of other triangles, too.
+// Those of cancelled triangles that are no wall. A wall is a connected group whose every border
+// edge is an edge of other triangles, too.
 std::vector<char> without_walls(const TriangleMesh& cards, const TriangleMesh& others) {
   std::map<Edge, int> of_others;
   each_edge(half_edges_of(others), [&](std::span<const HalfEdge> s) { of_others[s[0].edge] = 1; });

@@ -1,5 +1,6 @@
-// Orientation: the exact sign of the enclosed volume. Nesting: of the shells whose boxes contain that of
-// a shell, the smallest one that contains it is its parent. Shells that do not cross form a tree.
+// Orientation: the exact sign of the enclosed volume. Nesting: of the shells whose boxes contain
+// that of a shell, the smallest one that contains it is its parent. Shells that do not cross form a
+// tree.
 #include "surface/shells.h"
 
 #include <algorithm>

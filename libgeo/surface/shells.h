@@ -1,5 +1,5 @@
-// Shells of a surface: which of them lie in which others, and how each is oriented. Checks, repair and
-// the messages of all tools share this one test.
+// Shells of a surface: which of them lie in which others, and how each is oriented. Checks, repair
+// and the messages of all tools share this one test.
 #pragma once
 
 #include <cstdint>

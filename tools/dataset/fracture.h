@@ -40,8 +40,8 @@ struct Fracture {
   std::vector<geo::Bond> bonds;  ///< ordered by their pieces
 };
 
-/// Reads a model and makes its complex; `say` takes what a repair decided about shells. Throws InputError where it is
-/// no solid, or cut.
+/// Reads a model and makes its complex; `say` takes what a repair decided about shells. Throws
+/// InputError where it is no solid, or cut.
 Model read_model(const std::string& path, const std::string& name, bool repair, const tool::Say& say);
 
 /// Breaks a model, and checks the result: every piece is closed and has a volume, volumes sum to

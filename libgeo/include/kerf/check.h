@@ -19,7 +19,7 @@ namespace geo {
 
 // ---- Shells: the connected parts of a closed surface
 
-/// What a shell bounds, by the number of shells around it and by its orientation.
+/// The role of a shell, by the number of shells around it and by its orientation.
 enum class ShellKind : std::uint8_t {
   outer,     ///< outwards, around material: the outside of a solid, or of a core in a cavity
   cavity,    ///< inwards, in material
@@ -39,9 +39,9 @@ struct Shell {
   bool well_oriented() const { return kind == ShellKind::outer || kind == ShellKind::cavity; }
 };
 
-/// The shells of a surface, by their first triangles. Precondition: it is closed, manifold, oriented
-/// and free of crossings. Nesting and orientation are exact. Cost: n log n for shells beside each
-/// other.
+/// The shells of a surface, by their first triangles. Precondition: it is closed, manifold,
+/// oriented and free of crossings. Nesting and orientation are exact. Cost: n log n for shells
+/// beside each other.
 std::vector<Shell> find_shells(const TriangleMesh& mesh);
 
 struct SurfaceReport {
@@ -78,9 +78,9 @@ SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex,
                                                           const std::vector<FaceId>* only = nullptr);
 
-/// Throws InputError unless `mesh` is a valid model: closed, manifold, each shell oriented outwards or,
-/// as a cavity, inwards, no degenerate or self-intersecting triangles, finite coordinates. The message
-/// names the first offending indices and the remedy.
+/// Throws InputError unless `mesh` is a valid model: closed, manifold, each shell oriented outwards
+/// or, as a cavity, inwards, no degenerate or self-intersecting triangles, finite coordinates. The
+/// message names the first offending indices and the remedy.
 void require_solid(const TriangleMesh& mesh);
 
 // ---- Predicates
@@ -96,7 +96,7 @@ bool in_radial_order(const Vec3& a, const Vec3& b, std::span<const Vec3> through
 
 // ---- Repair: turns a surface that is nearly solid into a solid.
 
-/// What becomes of shells that lie in the material of others.
+/// The treatment of shells that lie in the material of others.
 enum class InnerShells {
   by_orientation,  ///< one oriented against its surroundings is a cavity, one oriented like them is left out
   cavities,        ///< each is a cavity, and a shell in a cavity is a core
@@ -132,12 +132,12 @@ struct RepairStats {
 /// where their vertices are up to weld_distance apart (model units); drops triangles that bound
 /// nothing; orients neighbours alike; fills each hole by triangles between its corners, or, with
 /// smooth_fill and where nothing crosses, by a fair patch that continues the surface around it;
-/// turns shells outwards, cavities inwards, and treats shells in material as options.inner says; drops
-/// vertices without triangles.
+/// turns shells outwards, cavities inwards, and treats shells in material as options.inner says;
+/// drops vertices without triangles.
 ///
-/// Which inner shells are cavities follows from the winding number. Relative to the orientation of the
-/// outermost shell, an inner one adds 1 or takes 1 away, and material is where the sum is above 0. So
-/// repair() and self_union() decide alike.
+/// Which inner shells are cavities follows from the winding number. Relative to the orientation of
+/// the outermost shell, an inner one adds 1 or takes 1 away, and material is where the sum is above
+/// 0. So repair() and self_union() decide alike.
 ///
 /// Attributes stay with their triangles; a filled hole has those of its rim. Intersecting triangles
 /// and edges of more than two triangles remain: check_surface() finds them.
@@ -145,7 +145,7 @@ RepairStats repair(TriangleMesh& mesh, const RepairOptions& options = {});
 
 // ---- Open sheets: parts of a surface that bound nothing
 
-/// What parts with open edges are taken for.
+/// The meaning of parts with open edges.
 enum class OpenParts {
   by_area,  ///< open sheets where closing their holes takes half their area, or where a rim is no loop
   closed,   ///< surfaces with holes
@@ -159,10 +159,11 @@ struct OpenSheetStats {
   std::size_t sheets = 0;             ///< parts taken out
 };
 
-/// Takes the open sheets out of a plain mesh and returns them, on the same vertices. Before, it welds
-/// seams as repair() does. Of two triangles that coincide and face each other, such as those of a
-/// double-sided card, one stays. Parts are joined across edges of two triangles. A part of a sphere is
-/// taken for a sheet where it is smaller than a half: closing it takes more than half of its area.
+/// Takes the open sheets out of a plain mesh and returns them, on the same vertices. Before, it
+/// welds seams as repair() does. Where two triangles coincide and face each other, as in a
+/// double-sided card, one stays. Parts are joined across edges of two triangles. A part of a sphere
+/// is taken for a sheet where it is smaller than a half: closing it takes more than half of its
+/// area.
 TriangleMesh take_sheets(TriangleMesh& mesh, double weld_distance = 0, OpenParts open = OpenParts::by_area,
                          OpenSheetStats* stats = nullptr);
 

@@ -142,12 +142,12 @@ struct VolumeOptions {
 /// without a name given, or no closed surface at the level.
 TriangleMesh read_volume(const std::string& path, const VolumeOptions& options = {});
 
-/// A new surface around closed parts, which may intersect themselves and each other, and open sheets,
-/// as take_sheets() tells them apart. Around closed parts it is the zero level of their distance field,
-/// with voxels of edge `voxel`, which also rounds edges by that length. A sheet becomes a plate of the
-/// thickness `voxel`. So does a closed part whose mean thickness is less, in addition to its own.
-/// `source` is the nearest triangle of `mesh`, which also gives the attributes. Throws InputError where
-/// nothing has an extent.
+/// A new surface around closed parts, which may intersect themselves and each other, and open
+/// sheets, as take_sheets() tells them apart. Around closed parts it is the zero level of their
+/// distance field, with voxels of edge `voxel`, which also rounds edges by that length. A sheet
+/// becomes a plate of the thickness `voxel`. So does a closed part whose mean thickness is less, in
+/// addition to its own. `source` is the nearest triangle of `mesh`, which also gives the
+/// attributes. Throws InputError where nothing has an extent.
 TriangleMesh wrapped(const TriangleMesh& mesh, double voxel, OpenParts open = OpenParts::by_area);
 
 /// The changes that wrapped_solid() made.
@@ -156,8 +156,9 @@ struct WrapStats {
   RepairStats repair;  ///< of the other parts
 };
 
-/// A valid model around a plain mesh: take_sheets(), then repair() of the other parts, then wrapped().
-/// Throws InputError where no triangle bounds anything, and where the new surface is no valid model.
+/// A valid model around a plain mesh: take_sheets(), then repair() of the other parts, then
+/// wrapped(). Throws InputError where no triangle bounds anything, and where the new surface is no
+/// valid model.
 TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions& options = {},
                            OpenParts open = OpenParts::by_area, WrapStats* stats = nullptr);
 

@@ -120,10 +120,10 @@ struct PlacedModels {
   double gap = 0;
 };
 
-/// Places one mesh for each of scene.bodies; each is a valid model (require_solid()). Bodies that touch,
-/// or overlap by rounding alone, are moved apart where they do, by a ten-thousandth of the mean edge.
-/// Throws InputError where the numbers of meshes and bodies differ. Also where two bodies overlap, or lie
-/// in each other: the message names both and says how deep.
+/// Places one mesh for each of scene.bodies; each is a valid model (require_solid()). Bodies that
+/// touch, or overlap by rounding alone, are moved apart where they do, by a ten-thousandth of the
+/// mean edge. Throws InputError where the numbers of meshes and bodies differ. Also where two
+/// bodies overlap, or lie in each other: the message names both and says how deep.
 PlacedModels place_models(const Scene& scene, std::vector<TriangleMesh> meshes);
 
 /// A line for the user that names the bodies that touched; empty where none did.

@@ -1,4 +1,5 @@
 // kerf-repair: makes a valid solid from a surface with faults, or wraps it in a new surface.
+#include <algorithm>
 #include <iostream>
 
 #include <kerf/check.h>
@@ -94,6 +95,15 @@ std::string figures(const Outcome& done, const geo::TriangleMesh& mesh) {
   return text + "}";
 }
 
+// Throws InputError for a mesh of which nothing can be made, whatever the options.
+void require_triangles(const std::string& path, const geo::TriangleMesh& mesh) {
+  const bool any = std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const geo::Triangle& t) {
+    const geo::Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    return a != b && b != c && c != a;
+  });
+  if (!any) throw geo::InputError(path + ": no triangle has three different corners; give a surface");
+}
+
 // The mesh as a solid, with its triangles where they are sound.
 geo::TriangleMesh solid_of(const Command& w, geo::TriangleMesh mesh, double diagonal, Outcome& done) {
   const geo::RepairOptions options{w.weld * diagonal, w.smooth, inner_of(w)};
@@ -150,6 +160,7 @@ int main(int argc, char** argv) {
     geo::TriangleMesh mesh = geo::read_surface(w.model).mesh;
     if (mesh.two_sided())
       throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
+    require_triangles(w.model, mesh);
     const double diagonal = geo::bounding_box(mesh).diagonal();
     Outcome done;
     mesh = solid_of(w, std::move(mesh), diagonal, done);

@@ -17,6 +17,7 @@
 
 #include "geometry/bvh.h"
 #include "kerf/check.h"
+#include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "surface/shells.h"
@@ -232,7 +233,8 @@ TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions&
   if (mesh.triangles.empty() && sheets.triangles.empty()) throw InputError("has no triangles that bound anything");
   TriangleMesh solid = surface_around(mesh, sheets, voxel);
   take_attributes(joined(std::move(mesh), sheets), solid);
-  require_solid(solid);
+  // In ambiguous cells OpenVDB's surface may touch itself.
+  if (!check_surface(solid, true).good()) solid = repaired_solid(std::move(solid));
   if (stats) *stats = done;
   return solid;
 }

@@ -1,4 +1,5 @@
-// Bodies that touch when they are placed: they are moved apart by a gap; those that overlap are refused.
+// Bodies that touch when they are placed: they are moved apart by a gap; those that overlap are
+// refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -52,7 +53,8 @@ TriangleMesh box(const Vec3& size, double edge = 1) { return make_block(size, ed
 
 Eigen::Quaterniond on_corner() { return Eigen::Quaterniond::FromTwoVectors(Vec3(1, 1, 1), Vec3(0, 0, 1)); }
 
-// The bodies touch as they are given; placed, they do not, and nothing has moved by more than a few gaps.
+// The bodies touch as they are given; placed, they do not, and nothing has moved by more than a few
+// gaps.
 void check_parted(const std::vector<Placed>& bodies, std::size_t pairs) {
   const PlacedModels models = place(bodies);
   CHECK(models.touching.size() == pairs);
@@ -63,7 +65,8 @@ void check_parted(const std::vector<Placed>& bodies, std::size_t pairs) {
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (std::size_t v = 0; v < bodies[b].mesh.vertices.size(); ++v, ++at) {
       CHECK(models.bodies[b].vertices[v] == models.all.vertices[at]);
-      farthest = std::max(farthest, (models.all.vertices[at] - scene.bodies[b].place * bodies[b].mesh.vertices[v]).norm());
+      farthest =
+          std::max(farthest, (models.all.vertices[at] - scene.bodies[b].place * bodies[b].mesh.vertices[v]).norm());
     }
   CHECK(farthest > 0);
   CHECK(farthest < 8 * models.gap);
@@ -82,7 +85,8 @@ TEST_CASE("bodies that touch in faces, edges, corners, and in no vertex are part
   check_parted({{cube}, {cube, {1, 1, 1}}}, 1);
   check_parted({{box({4, 1, 1}, 4)}, {box({1, 4, 1}, 4), {1.5, -1.5, 1}}}, 1);
   check_parted({{box({6, 6, 1}, 6)}, {cube, {3, 3, 1}, on_corner()}}, 1);
-  check_parted({{box({6, 6, 1}, 6)}, {cube, {3, 3, 1}, Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitX()))}}, 1);
+  check_parted({{box({6, 6, 1}, 6)}, {cube, {3, 3, 1}, Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitX()))}},
+               1);
 }
 
 TEST_CASE("bodies apart are placed as they are, to the bit") {
@@ -105,7 +109,8 @@ TEST_CASE("boxes stacked at any place, of any size and rotation, touch but for r
     std::vector<Placed> bodies;
     for (int i = 0; i < 4; ++i) {
       const double height = size * random.uniform(0.3, 1.5);
-      bodies.push_back({box({size, size * random.uniform(0.4, 1.5), height}, size * random.uniform(0.3, 1)), at, turned});
+      bodies.push_back(
+          {box({size, size * random.uniform(0.4, 1.5), height}, size * random.uniform(0.3, 1)), at, turned});
       at += turned * Vec3(size * random.uniform(-0.2, 0.2), size * random.uniform(-0.2, 0.2), height);
     }
     const PlacedModels models = place(bodies);
@@ -137,7 +142,8 @@ TEST_CASE("a body in the cavity of another one is neither in its material nor to
 TEST_CASE("a stack that touches stands: it rests on itself without a crossing, as one with a gap does") {
   for (const double gap : {0.0, 1e-4}) {
     CAPTURE(gap);
-    std::string text = "gravity = [0, 0, -9.81]\n[material]\nyoung = 1e6\n[contact]\nself = true\n[time]\nframes = 12\n";
+    std::string text =
+        "gravity = [0, 0, -9.81]\n[material]\nyoung = 1e6\n[contact]\nself = true\n[time]\nframes = 12\n";
     std::vector<TriangleMesh> meshes;
     for (int i = 0; i < 3; ++i) {
       text += "[[body]]\nmesh = 'box'\nnodes = 150\nposition = [0, 0, " + std::to_string((1 + gap) * i) + "]\n" +

@@ -46,9 +46,9 @@ void append(TriangleMesh& mesh, const TriangleMesh& other) {
 }  // namespace
 
 TEST_CASE("flat, wavy and shallow sheets are taken out; closed surfaces and those with small holes stay") {
-  for (const TriangleMesh& sheet : {sheet_of(1, [](double, double) { return 0.0; }),
-                                    sheet_of(10, [](double x, double y) { return 0.1 * std::sin(7 * x + 3 * y); }),
-                                    bowl(-0.4)}) {
+  for (const TriangleMesh& sheet :
+       {sheet_of(1, [](double, double) { return 0.0; }),
+        sheet_of(10, [](double x, double y) { return 0.1 * std::sin(7 * x + 3 * y); }), bowl(-0.4)}) {
     TriangleMesh mesh = sheet;
     OpenSheetStats stats;
     CHECK(take_sheets(mesh, 0, OpenParts::by_area, &stats).triangles.size() == sheet.triangles.size());

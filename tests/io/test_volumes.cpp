@@ -131,7 +131,8 @@ TEST_CASE("an open sheet becomes a plate one voxel thick, at every size, whereve
         WrapStats stats;
         const TriangleMesh plate = wrapped_solid(sheet, voxel, {}, OpenParts::by_area, &stats);
         CHECK(stats.sheets.sheets == 1);
-        // The rim is a half pipe of that thickness, 4 to 4.2 long, of which coarse voxels cut edges off.
+        // The rim is a half pipe of that thickness, 4 to 4.2 long, of which coarse voxels cut edges
+        // off.
         const double rim = 3.1416 / 8 * voxel * voxel * (wave > 0 ? 4.1 : 4.0);
         CHECK(signed_volume(plate) > 0.95 * surface * voxel);
         CHECK(signed_volume(plate) < 1.02 * (surface * voxel + rim));

@@ -46,7 +46,7 @@ class Cutting {
   Cutting(const Command& command, const tool::Tool& t)
       : w_(command),
         t_(t),
-        file_(tool::read_solid(w_.model, w_.repair)),
+        file_(tool::read_solid(w_.model, w_.repair, [&](const std::string& line) { t.say("kerf-crack: " + line); })),
         complex_(tool::complex_of(file_, w_.model)),
         states_(file_.fronts) {
     options_.seed = t.seed;

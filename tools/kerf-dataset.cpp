@@ -130,6 +130,7 @@ int main(int argc, char** argv) {
     if (models.empty()) throw geo::InputError(w.models.front() + ": lists no model");
     const auto part = dataset::part_of(dataset::plan(models, settings).size(), index, count);
     const auto totals = dataset::run(t.output_path, models, settings, part, t.progress());
+    for (const std::string& note : totals.notes) t.say("kerf-dataset: " + note);
     if (t.json) print(totals);
     const std::size_t bad = totals.failed;
     if (bad > 0)

@@ -31,6 +31,7 @@ sim::Setup read(const Command& command, const tool::Tool& t) {
                          : live::bare_model(command.scene, command.nodes, command.up[0], overrides);
   live::adapt_scene(setup.scene, command.rate, !command.no_blades);
   sim::warn_of_large_models(setup, t);
+  sim::tell_touching_bodies(setup, "kerf-live", t);
   return setup;
 }
 

@@ -212,7 +212,8 @@ int main(int argc, char** argv) {
     const bool file = t.output_path.ends_with(".glb") || t.output_path.ends_with(".usda");
     file ? void(t.target(true)) : t.require_ending();
     if (!file) require_new_folder(t.output_path);
-    pieces::Subject subject = pieces::read_subject(w.model, w.repair);
+    pieces::Subject subject =
+        pieces::read_subject(w.model, w.repair, [&](const std::string& line) { t.say("kerf-pieces: " + line); });
     const Joined small = join_small(subject, w.least, w.model);
     const geo::Complex& complex = subject.complex;
     const geo::Pieces found = geo::find_pieces(complex);

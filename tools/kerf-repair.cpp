@@ -1,4 +1,5 @@
 // kerf-repair: makes a valid solid from a surface with faults, or wraps it in a new surface.
+#include <algorithm>
 #include <iostream>
 
 #include <kerf/check.h>
@@ -14,7 +15,23 @@ struct Command {
   std::string model;
   double weld = 0, voxel = 0, edge = 0, unit = 0;
   bool smooth = false;
+  std::string inner = "oriented", open = "auto";
 };
+
+struct Outcome {
+  geo::SolidRepairStats solid;
+  geo::OpenSheetStats sheets;  // with --voxel
+};
+
+geo::InnerShells inner_of(const Command& w) {
+  if (w.inner == "cavities") return geo::InnerShells::cavities;
+  return w.inner == "filled" ? geo::InnerShells::filled : geo::InnerShells::by_orientation;
+}
+
+geo::OpenParts open_of(const Command& w) {
+  if (w.open == "closed") return geo::OpenParts::closed;
+  return w.open == "sheets" ? geo::OpenParts::sheets : geo::OpenParts::by_area;
+}
 
 std::string in_words(const geo::RepairStats& r) {
   std::string text;
@@ -24,37 +41,85 @@ std::string in_words(const geo::RepairStats& r) {
   const auto add = [&](std::size_t n, const std::string& one, const std::string& many, const std::string& done) {
     if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, one, many) + " " + done;
   };
-  add(r.welded_vertices, "vertex", "vertices", "welded"), add(r.dropped_triangles, "triangle", "triangles", "dropped"),
-      add(r.flipped_triangles, "triangle", "triangles", "turned");
-  add(r.filled_holes, "hole", "holes",
-      (r.smooth_fills == 0                ? ""
-       : r.smooth_fills == r.filled_holes ? "smoothly "
-                                          : "(" + std::to_string(r.smooth_fills) + " smoothly) ") +
-          "closed with " + counted(r.added_triangles, "triangle", "triangles")),
-      add(r.dropped_shells, "hidden shell", "hidden shells", "left out");
+  add(r.welded_vertices, "vertex", "vertices", "welded");
+  add(r.dropped_triangles, "triangle", "triangles", "dropped");
+  add(r.flipped_triangles, "triangle", "triangles", "turned");
+  const std::string smoothly = r.smooth_fills == 0 ? ""
+                               : r.smooth_fills == r.filled_holes
+                                   ? "smoothly "
+                                   : "(" + std::to_string(r.smooth_fills) + " smoothly) ";
+  add(r.filled_holes, "hole", "holes", smoothly + "closed with " + counted(r.added_triangles, "triangle", "triangles"));
+  if (const std::string shells = tool::shell_decisions(r); !shells.empty()) text += (text.empty() ? "" : ", ") + shells;
+  return text;
+}
+
+std::string in_words(const Outcome& done, const Command& w) {
+  geo::RepairStats all = done.solid.repair;
+  all.welded_vertices += done.sheets.welded_vertices;
+  all.dropped_triangles += done.sheets.dropped_triangles;
+  std::string text = in_words(all);
+  const auto add = [&](const std::string& more) { text += (text.empty() ? "" : ", ") + more; };
+  if (done.solid.united)
+    add("crossing triangles cut: " + tool::counted(done.solid.united->cells, "enclosed region") + " united, " +
+        tool::counted(done.solid.united->removed_faces, "face") + " inside left out");
+  if (done.sheets.sheets > 0)
+    add(tool::counted(done.sheets.sheets, "open sheet") + " made " + (done.sheets.sheets == 1 ? "a plate" : "plates") +
+        " one voxel thick (--open closed closes holes instead)");
+  if (w.voxel > 0 && w.open == "auto" && done.solid.repair.filled_holes > 0) add("(--open sheets leaves holes open)");
   return text.empty() ? "nothing to mend" : text;
 }
 
-std::string in_words(const geo::SolidRepairStats& done) {
-  if (!done.united) return in_words(done.repair);
-  return (done.repair.nothing() ? "" : in_words(done.repair) + ", ") +
-         "crossing triangles cut: " + tool::counted(done.united->cells, "enclosed region") + " united, " +
-         tool::counted(done.united->removed_faces, "face") + " inside left out";
+std::string figures(const Outcome& done, const geo::TriangleMesh& mesh) {
+  const geo::RepairStats& repair = done.solid.repair;
+  std::string text = "{";
+  const auto add = [&](const std::string& key, const std::string& value) {
+    text += (text.size() > 1 ? ",\"" : "\"") + key + "\":" + value;
+  };
+  const auto count = [&](const std::string& key, std::size_t n) { add(key, std::to_string(n)); };
+  count("welded", repair.welded_vertices + done.sheets.welded_vertices);
+  count("dropped", repair.dropped_triangles + done.sheets.dropped_triangles);
+  count("turned", repair.flipped_triangles);
+  count("holes", repair.filled_holes);
+  count("smooth", repair.smooth_fills);
+  count("added", repair.added_triangles);
+  count("inverted", repair.inverted_shells);
+  count("hidden", repair.dropped_shells);
+  count("hollowed", repair.hollowed_shells);
+  count("filled", repair.filled_shells);
+  count("sheets", done.sheets.sheets);
+  count("united", done.solid.united ? done.solid.united->cells : 0);
+  count("inside", done.solid.united ? done.solid.united->removed_faces : 0);
+  count("vertices", mesh.vertices.size());
+  count("faces", mesh.triangles.size());
+  add("volume", tool::number(geo::signed_volume(mesh)));
+  return text + "}";
+}
+
+// Throws InputError for a mesh of which nothing can be made, whatever the options.
+void require_triangles(const std::string& path, const geo::TriangleMesh& mesh) {
+  const bool any = std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const geo::Triangle& t) {
+    const geo::Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    return a != b && b != c && c != a;
+  });
+  if (!any) throw geo::InputError(path + ": no triangle has three different corners; give a surface");
 }
 
 // The mesh as a solid, with its triangles where they are sound.
-geo::TriangleMesh solid_of(const Command& w, geo::TriangleMesh mesh, double diagonal, geo::SolidRepairStats& done) {
-  if (w.voxel > 0) {
-    done.repair = geo::repair(mesh, w.weld * diagonal, w.smooth);
-    if (mesh.triangles.empty()) throw geo::InputError(w.model + ": has no triangles that bound anything");
-  }
+geo::TriangleMesh solid_of(const Command& w, geo::TriangleMesh mesh, double diagonal, Outcome& done) {
+  const geo::RepairOptions options{w.weld * diagonal, w.smooth, inner_of(w)};
   try {
-    if (w.voxel > 0)
-      mesh = geo::wrapped(mesh, w.voxel * diagonal);
-    else
-      mesh = geo::repaired_solid(std::move(mesh), w.weld * diagonal, w.smooth, &done);
-    if (w.edge > 0) mesh = geo::refined(mesh, w.edge * diagonal);
-    if (w.voxel > 0 || w.edge > 0) geo::require_solid(mesh);
+    if (w.voxel > 0) {
+      geo::WrapStats wrapped;
+      mesh = geo::wrapped_solid(std::move(mesh), w.voxel * diagonal, options, open_of(w), &wrapped);
+      done.solid.repair = wrapped.repair;
+      done.sheets = wrapped.sheets;
+    } else {
+      mesh = geo::repaired_solid(std::move(mesh), options, &done.solid);
+    }
+    if (w.edge > 0) {
+      mesh = geo::refined(mesh, w.edge * diagonal);
+      geo::require_solid(mesh);
+    }
   } catch (const std::runtime_error& e) {
     const std::string what = e.what();
     throw tool::Failure(w.model + ": " + what.substr(0, what.rfind("; ")) +
@@ -79,6 +144,10 @@ int main(int argc, char** argv) {
   t.flag("--smooth", w.smooth, "Close holes by patches that go on from the surface around them, as fine as their rims");
   t.option("--voxel", w.voxel,
            "Make a new surface around all parts, of voxels of this fraction of the diagonal; 0: keep the triangles");
+  t.choice("--inner", w.inner, {"oriented", "cavities", "filled"},
+           "Shells in solid material: those oriented against it are cavities and others hidden; all cavities; none");
+  t.choice("--open", w.open, {"auto", "closed", "sheets"},
+           "With --voxel, parts with open edges: plates where closing them takes half their area; closed; plates");
   t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
   t.unit_option(w.unit, "Unit of the model's coordinates, which the output states: m, cm, mm, in, ft ...");
   t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
@@ -93,24 +162,18 @@ int main(int argc, char** argv) {
     if (w.unit > 0) mesh.unit = w.unit;
     if (mesh.two_sided())
       throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
+    require_triangles(w.model, mesh);
     const double diagonal = geo::bounding_box(mesh).diagonal();
-    geo::SolidRepairStats done;
+    Outcome done;
     mesh = solid_of(w, std::move(mesh), diagonal, done);
     if (target.ends_with(".obj")) tool::say_left_out_of_obj(mesh, target, t);
     geo::write_all(target, [&](std::ostream& out) {
       target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair");
     });
     if (t.json)
-      (target == "-" ? std::cerr : std::cout)
-          << "{\"welded\":" << done.repair.welded_vertices << ",\"dropped\":" << done.repair.dropped_triangles
-          << ",\"turned\":" << done.repair.flipped_triangles << ",\"holes\":" << done.repair.filled_holes
-          << ",\"smooth\":" << done.repair.smooth_fills << ",\"added\":" << done.repair.added_triangles
-          << ",\"hidden\":" << done.repair.dropped_shells << ",\"united\":" << (done.united ? done.united->cells : 0)
-          << ",\"inside\":" << (done.united ? done.united->removed_faces : 0)
-          << ",\"vertices\":" << mesh.vertices.size() << ",\"faces\":" << mesh.triangles.size()
-          << ",\"volume\":" << tool::number(geo::signed_volume(mesh)) << "}\n";
+      (target == "-" ? std::cerr : std::cout) << figures(done, mesh) << '\n';
     else
-      t.say("kerf-repair: " + w.model + ": " + in_words(done) +
+      t.say("kerf-repair: " + w.model + ": " + in_words(done, w) +
             (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : "") +
             (w.edge > 0 ? "; divided into " + std::to_string(mesh.triangles.size()) + " triangles" : ""));
   });

@@ -103,7 +103,8 @@ int main(int argc, char** argv) {
   return t.run(argc, argv, [&] {
     const auto options = options_of(w, t.seed);
     const std::string target = t.target(false);
-    const auto file = tool::read_solid(w.model, w.repair);
+    const auto file =
+        tool::read_solid(w.model, w.repair, [&](const std::string& line) { t.say("kerf-score: " + line); });
     const geo::Complex complex = tool::complex_of(file, w.model);
     geo::Score score;
     try {

@@ -216,6 +216,7 @@ void simulate(const Command& command, const tool::Tool& t) {
   folder.require_room(command.resume);
   const sim::Setup setup = sim::read_setup(command.scene, sim::parse_overrides(command.settings));
   sim::warn_of_large_models(setup, t);
+  sim::tell_touching_bodies(setup, "kerf-sim", t);
   const int last = command.frames > 0 ? command.frames : setup.scene.frames;
   std::error_code error;
   const bool resumed = command.resume && fs::exists(folder.checkpoint(), error);

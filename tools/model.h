@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <string>
 
 #include <kerf/check.h>
@@ -12,6 +13,9 @@
 #include "tool.h"
 
 namespace tool {
+
+/// Takes a line for the user, such as Tool::say().
+using Say = std::function<void(const std::string&)>;
 
 /// Throws InputError unless a surface, read from these bytes, is closed, manifold, oriented
 /// outwards, free of self-intersection.
@@ -35,22 +39,43 @@ inline geo::SurfaceFile parse_solid(const std::string& bytes, const std::string&
 }
 inline geo::SurfaceFile read_solid(const std::string& path) { return parse_solid(geo::read_all(path), path); }
 
-/// Repairs a plain surface, as kerf-repair does without options. Throws InputError where the result
-/// is no solid.
-inline void repair_plain(geo::TriangleMesh& mesh, const std::string& path) {
+/// Words for what a repair decided about shells, and the option of kerf-repair that decides
+/// otherwise; empty where there was nothing to decide.
+inline std::string shell_decisions(const geo::RepairStats& done) {
+  std::string text;
+  const auto add = [&](std::size_t n, const std::string& verb) {
+    if (n > 0) text += (text.empty() ? "" : ", ") + counted(n, "shell") + " " + verb;
+  };
+  add(done.inverted_shells, "inside out turned");
+  add(done.dropped_shells, "in solid material, oriented like it, left out as hidden (--inner cavities makes " +
+                               std::string(done.dropped_shells == 1 ? "it a cavity" : "them cavities") + ")");
+  add(done.hollowed_shells, "in solid material, oriented like it, made " +
+                                std::string(done.hollowed_shells == 1 ? "a cavity" : "cavities") +
+                                " (--inner oriented leaves " + (done.hollowed_shells == 1 ? "it" : "them") + " out)");
+  add(done.filled_shells,
+      "left out, so that " + std::string(done.filled_shells == 1 ? "a cavity is" : "cavities are") + " filled");
+  return text;
+}
+
+/// Repairs a plain surface, as kerf-repair does without options, and says what it decided about
+/// shells. Throws InputError where the result is no solid.
+inline void repair_plain(geo::TriangleMesh& mesh, const std::string& path, const Say& say) {
   if (mesh.two_sided()) return;
+  geo::SolidRepairStats done;
   try {
-    mesh = geo::repaired_solid(std::move(mesh));
+    mesh = geo::repaired_solid(std::move(mesh), {}, &done);
   } catch (const std::runtime_error& e) {
     throw geo::InputError(path + ": cannot be repaired: " + e.what());
   }
+  if (const std::string decisions = shell_decisions(done.repair); !decisions.empty())
+    say(path + ": " + decisions + "; kerf-repair with that option, instead of --repair, decides otherwise");
 }
 
 /// As read_solid(), where `repair` is false. Else a plain surface is repaired first.
-inline geo::SurfaceFile read_solid(const std::string& path, bool repair) {
+inline geo::SurfaceFile read_solid(const std::string& path, bool repair, const Say& say) {
   if (!repair) return read_solid(path);
   geo::SurfaceFile file = tool::read_surface(path);
-  repair_plain(file.mesh, path);
+  repair_plain(file.mesh, path, say);
   return file;
 }
 

@@ -52,9 +52,9 @@ class Module:
             mended, stats = mesh.repair(smooth=smooth)
             words = _words(stats)
             if voxel:
-                size = numpy.linalg.norm(numpy.ptp(numpy.array(mended.vertices), axis=0))
-                mended = mended.wrap(voxel * size)
-                words += f"; wrapped in {len(mended.faces)} triangles"
+                size = numpy.linalg.norm(numpy.ptp(numpy.array(mesh.vertices), axis=0))
+                mended = self.kerf.Solid.repaired(mesh, smooth=smooth, voxel=voxel * size)
+                words = f"wrapped in {len(mended.faces)} triangles"
             elif not mended.check().good:
                 mended = mended.self_union()
                 words += "; crossing triangles cut, parts united"

@@ -145,9 +145,9 @@ TriangleMesh self_union(const TriangleMesh& mesh, const CrackOptions& options, S
   return std::move(result);
 }
 
-TriangleMesh repaired_solid(TriangleMesh mesh, double weld_distance, bool smooth_fill, SolidRepairStats* stats) {
+TriangleMesh repaired_solid(TriangleMesh mesh, const RepairOptions& options, SolidRepairStats* stats) {
   SolidRepairStats done;
-  done.repair = repair(mesh, weld_distance, smooth_fill);
+  done.repair = repair(mesh, options);
   if (mesh.triangles.empty()) throw InputError("has no triangles that bound anything");
   try {
     require_solid(mesh);

@@ -3,6 +3,7 @@
 #include "geometry/predicates.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
 #include <CGAL/intersections.h>
 
 #include <algorithm>
@@ -165,6 +166,37 @@ int compare_angle(const Vec3& u, const Vec3& v, const Vec3& zero, const Vec3& a,
   if (qa != qb) return qa < qb ? -1 : 1;
   if (qa == 0 || qa == 2) return 0;
   return -orient3d(u, v, a, b);
+}
+
+int volume_sign(std::span<const std::array<Vec3, 3>> triangles) {
+  if (triangles.empty()) return 0;
+  // Volumes of tetrahedra with a common apex on the surface, so that coordinates far from 0 do no
+  // harm.
+  const Vec3 apex = triangles[0][0];
+  double sum = 0, permanent = 0;
+  for (const auto& corners : triangles) {
+    const Vec3 a = corners[0] - apex, b = corners[1] - apex, c = corners[2] - apex;
+    sum += a.dot(b.cross(c));
+    const Vec3 u = b.cwiseAbs(), v = c.cwiseAbs();
+    permanent += a.cwiseAbs().dot(
+        Vec3(u.y() * v.z() + u.z() * v.y(), u.z() * v.x() + u.x() * v.z(), u.x() * v.y() + u.y() * v.x()));
+  }
+  // Rounding, relative to the permanent, with ε = 2⁻⁵³: 3 ε of the differences, 5 ε of a
+  // determinant, n ε of the sum, and as much for the permanent's own sum. 2⁻⁵² (n + 8) bounds all
+  // of it.
+  const double bound = 0x1p-52 * (double(triangles.size()) + 8) * permanent;
+  if (permanent > filter_smallest && permanent < filter_largest && std::abs(sum) > bound) return sum > 0 ? 1 : -1;
+  using Exact = CGAL::Exact_rational;
+  Exact exact = 0;
+  const auto minus = [](const Vec3& p, const Vec3& q, int k) { return Exact(p[k]) - Exact(q[k]); };
+  for (const auto& corners : triangles) {
+    std::array<std::array<Exact, 3>, 3> m;
+    for (int row = 0; row < 3; ++row)
+      for (int k = 0; k < 3; ++k) m[row][k] = minus(corners[row], apex, k);
+    exact += m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) + m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
+             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  }
+  return static_cast<int>(CGAL::sign(exact));
 }
 
 }  // namespace geo

@@ -2,7 +2,9 @@
 // arithmetic decides the rest.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "kerf/vec.h"
@@ -83,5 +85,9 @@ bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]);
 /// points that are not on the line. Angles are in [0, 2π), counter-clockwise with v towards the
 /// viewer, from the half-plane of `zero`. Returns the sign of angle(a) − angle(b).
 int compare_angle(const Vec3& u, const Vec3& v, const Vec3& zero, const Vec3& a, const Vec3& b);
+
+/// The sign of the volume that a closed oriented surface encloses, by the divergence theorem: +1
+/// where it is oriented outwards. A filter decides nearly always; else rational arithmetic does.
+int volume_sign(std::span<const std::array<Vec3, 3>> triangles);
 
 }  // namespace geo

@@ -1,18 +1,26 @@
-// read_volume(), wrapped() and write_level_set() of kerf/files.h. Through OpenVDB:
+// read_volume(), wrapped(), wrapped_solid() and write_level_set() of kerf/files.h. Through OpenVDB:
 // volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set from a closed
-// surface. wrapped() does both, in coordinates scaled to voxels.
+// surface, meshToUnsignedDistanceField() distances from open sheets.
 #include "kerf/files.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Composite.h>
 #include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
+#include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "geometry/bvh.h"
+#include "kerf/check.h"
+#include "kerf/crack.h"
 #include "kerf/error.h"
+#include "kerf/parallel.h"
+#include "surface/shells.h"
 
 namespace geo {
 namespace {
@@ -72,6 +80,126 @@ TriangleMesh surface_of(const Grid& grid, const VolumeOptions& options, const st
   return mesh;
 }
 
+// The triangles of one mesh after those of another. Both have the same arrays of attributes, unless
+// one is empty.
+TriangleMesh joined(TriangleMesh to, const TriangleMesh& from) {
+  if (to.triangles.empty()) return from;
+  const auto first = static_cast<std::uint32_t>(to.vertices.size());
+  const auto append = [](auto& values, const auto& more) { values.insert(values.end(), more.begin(), more.end()); };
+  append(to.vertices, from.vertices);
+  for (const auto& [a, b, c] : from.triangles) to.triangles.push_back({a + first, b + first, c + first});
+  append(to.source, from.source);
+  append(to.attributes.uv, from.attributes.uv);
+  append(to.attributes.normal, from.attributes.normal);
+  append(to.attributes.color, from.attributes.color);
+  append(to.attributes.group, from.attributes.group);
+  return to;
+}
+
+// The shells that voxels of this edge do not resolve: those of a smaller mean thickness, which is
+// twice the volume over the area.
+TriangleMesh thin_shells(const TriangleMesh& closed, double voxel) {
+  TriangleMesh thin;
+  thin.vertices = closed.vertices;
+  const auto shell_of = shell_of_triangles(closed);
+  const std::size_t count = shell_of.empty() ? 0 : *std::max_element(shell_of.begin(), shell_of.end()) + 1u;
+  std::vector<double> volume(count, 0), surface(count, 0);
+  const Vec3 middle = bounding_box(closed).center();
+  const auto corners = corners_of(closed);
+  for (std::size_t t = 0; t < corners.size(); ++t) {
+    const Vec3 a = corners[t][0] - middle, b = corners[t][1] - middle, c = corners[t][2] - middle;
+    volume[shell_of[t]] += a.dot(b.cross(c)) / 6;
+    surface[shell_of[t]] += (b - a).cross(c - a).norm() / 2;
+  }
+  for (std::size_t t = 0; t < corners.size(); ++t)
+    if (2 * std::abs(volume[shell_of[t]]) < voxel * surface[shell_of[t]]) thin.triangles.push_back(closed.triangles[t]);
+  return thin;
+}
+
+using FloatGrid = openvdb::FloatGrid;
+
+// A mesh in units of voxels about a centre, where single precision is enough.
+TriangleMesh in_voxels(const TriangleMesh& mesh, const Vec3& middle, double voxel) {
+  TriangleMesh scaled;
+  for (const Vec3& p : mesh.vertices) scaled.vertices.push_back((p - middle) / voxel);
+  scaled.triangles = mesh.triangles;
+  return scaled;
+}
+
+// A level set of plates around triangles, which reach `offset` voxels to both sides. Distances are
+// linear but at the triangles themselves, so that with an offset of a voxel or more interpolation
+// is exact.
+FloatGrid::Ptr plate_of(const TriangleMesh& sheets, double offset) {
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+  for (const Vec3& p : sheets.vertices) points.emplace_back(float(p.x()), float(p.y()), float(p.z()));
+  for (const auto& [a, b, c] : sheets.triangles) triangles.emplace_back(a, b, c);
+  const auto half_width = float(openvdb::LEVEL_SET_HALF_WIDTH);
+  const auto grid = openvdb::tools::meshToUnsignedDistanceField<FloatGrid>(
+      *openvdb::math::Transform::createLinearTransform(1.0), points, triangles, {}, half_width + float(offset));
+  for (auto value = grid->beginValueOn(); value; ++value) value.setValue(*value - float(offset));
+  openvdb::tools::changeBackground(grid->tree(), half_width);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  return grid;
+}
+
+// Halves the distance of vertices from the triangles that a plate is around.
+void halve_plate(TriangleMesh& plate, const TriangleMesh& sheets) {
+  const TriangleBvh tree(corners_of(sheets));
+  parallel_for(plate.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Vec3& p = plate.vertices[v];
+      p = (p + tree.closest(p).point) / 2;
+    }
+  });
+}
+
+// Plates as voxels of their own thickness make them: twice as thick at first. Nothing where they
+// cross then, as in folds narrower than a voxel.
+std::optional<TriangleMesh> coarse_plate(const TriangleMesh& sheets, double voxel) {
+  const Vec3 middle = bounding_box(sheets).center();
+  const TriangleMesh scaled = in_voxels(sheets, middle, voxel);
+  TriangleMesh mesh = surface_of(*plate_of(scaled, 1), {}, "the level set");
+  halve_plate(mesh, scaled);
+  for (Vec3& p : mesh.vertices) p = middle + voxel * p;
+  return check_surface(mesh, true).good() ? std::optional(std::move(mesh)) : std::nullopt;
+}
+
+// The surface around closed parts and open sheets, without attributes. Where there are sheets,
+// voxels have half the edge, so that a plate is two of them thick.
+TriangleMesh surface_around(const TriangleMesh& closed, TriangleMesh sheets, double voxel) {
+  openvdb::initialize();
+  sheets = joined(std::move(sheets), thin_shells(closed, voxel));
+  const bool plates = !sheets.triangles.empty();
+  // Half voxels of more sheets than this take gigabytes.
+  constexpr double most = 1 << 22;
+  if (plates && closed.triangles.empty() && area(sheets) / (voxel * voxel / 4) > most)
+    if (auto mesh = coarse_plate(sheets, voxel)) return std::move(*mesh);
+  const double edge = plates ? voxel / 2 : voxel;
+  const Vec3 middle = bounding_box(joined(closed, sheets)).center();
+  FloatGrid::Ptr grid;
+  if (!closed.triangles.empty()) grid = level_set_of(in_voxels(closed, middle, edge), 1);
+  if (plates) {
+    const FloatGrid::Ptr plate = plate_of(in_voxels(sheets, middle, edge), 1);
+    if (grid)
+      openvdb::tools::csgUnion(*grid, *plate);
+    else
+      grid = plate;
+  }
+  if (!grid) throw InputError("has no triangles that bound anything");
+  TriangleMesh mesh = surface_of(*grid, {}, "the level set");
+  for (Vec3& p : mesh.vertices) p = middle + edge * p;
+  return mesh;
+}
+
+// Gives each triangle the attributes of the nearest one of `from`, which becomes its source.
+void take_attributes(const TriangleMesh& from, TriangleMesh& mesh) {
+  const TriangleBvh tree(corners_of(from));
+  for (const auto& [a, b, c] : mesh.triangles)
+    mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).triangle);
+  transfer_attributes(from, mesh);
+}
+
 }  // namespace
 
 TriangleMesh read_volume(const std::string& path, const VolumeOptions& options) {
@@ -89,19 +217,26 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options) 
   return surface_of(*openvdb::gridPtrCast<openvdb::DoubleGrid>(grid), options, path);
 }
 
-TriangleMesh wrapped(const TriangleMesh& solid, double voxel) {
-  // Coordinates in voxels about the centre, where single precision is enough.
-  const Vec3 middle = bounding_box(solid).center();
-  TriangleMesh scaled;
-  for (const Vec3& p : solid.vertices) scaled.vertices.push_back((p - middle) / voxel);
-  scaled.triangles = solid.triangles;
-  TriangleMesh mesh = surface_of(*level_set_of(scaled, 1), {}, "the level set");
-  const TriangleBvh tree(corners_of(solid));
-  for (Vec3& p : mesh.vertices) p = middle + voxel * p;
-  for (const auto& [a, b, c] : mesh.triangles)
-    mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).triangle);
-  transfer_attributes(solid, mesh);
-  return mesh;
+TriangleMesh wrapped(const TriangleMesh& mesh, double voxel, OpenParts open) {
+  TriangleMesh closed = mesh;
+  const TriangleMesh sheets = take_sheets(closed, 0, open);
+  TriangleMesh result = surface_around(closed, sheets, voxel);
+  take_attributes(mesh, result);
+  return result;
+}
+
+TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions& options, OpenParts open,
+                           WrapStats* stats) {
+  WrapStats done;
+  const TriangleMesh sheets = take_sheets(mesh, options.weld_distance, open, &done.sheets);
+  done.repair = repair(mesh, options);
+  if (mesh.triangles.empty() && sheets.triangles.empty()) throw InputError("has no triangles that bound anything");
+  TriangleMesh solid = surface_around(mesh, sheets, voxel);
+  take_attributes(joined(std::move(mesh), sheets), solid);
+  // In ambiguous cells OpenVDB's surface may touch itself.
+  if (!check_surface(solid, true).good()) solid = repaired_solid(std::move(solid));
+  if (stats) *stats = done;
+  return solid;
 }
 
 void write_level_set(const std::string& path, const TriangleMesh& solid, double voxel, bool fog) {

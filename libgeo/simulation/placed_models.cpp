@@ -4,6 +4,7 @@
 
 #include "kerf/error.h"
 #include "kerf/simulation.h"
+#include "simulation/touching_bodies.h"
 
 namespace geo {
 namespace {
@@ -39,7 +40,8 @@ PlacedModels place_models(const Scene& scene, std::vector<TriangleMesh> meshes) 
   if (meshes.size() != scene.bodies.size())
     throw InputError("the scene has " + std::to_string(scene.bodies.size()) + " bodies, but " +
                      std::to_string(meshes.size()) + " models were given");
-  PlacedModels models{{}, std::move(meshes)};
+  PlacedModels models;
+  models.bodies = std::move(meshes);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const SceneBody& body = scene.bodies[b];
     if (is_identity(body)) continue;  // the vertices stay as they are, to the bit
@@ -50,6 +52,7 @@ PlacedModels place_models(const Scene& scene, std::vector<TriangleMesh> meshes) 
     return models;
   }
   for (const TriangleMesh& body : models.bodies) append(models.all, body);
+  part_touching_bodies(scene, models);
   return models;
 }
 

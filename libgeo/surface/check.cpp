@@ -12,6 +12,7 @@
 #include "geometry/predicates.h"
 #include "kerf/error.h"
 #include "surface/radial_edge.h"
+#include "surface/shells.h"
 
 namespace geo {
 namespace {
@@ -121,6 +122,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_triangles(const Tr
   return pairs;
 }
 
+// Reports shells whose orientation does not fit their place. The surface is sound otherwise.
+void check_shells(const TriangleMesh& mesh, SurfaceReport& report) {
+  report.shells = find_shells(mesh);
+  if (const std::string problem = shell_problem(report.shells); !problem.empty()) report_problem(report, problem);
+}
+
 }  // namespace
 
 bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p,
@@ -198,6 +205,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   if (!pairs.empty())
     report_problem(report, "triangles " + pair_name(pairs[0].second, pairs[0].first) +
                                " intersect each other; repair the surface first");
+  if (report.good()) check_shells(mesh, report);
   return report;
 }
 
@@ -302,6 +310,18 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
   }
 }
 
+// The skin alone, each of its vertices once: the uncut surface.
+TriangleMesh skin_of(const Complex& k) {
+  TriangleMesh skin;
+  for (std::uint32_t v = 0; v < k.vertex_count(); ++v) skin.vertices.push_back(k.point(VertexId(v)));
+  for (std::uint32_t f = 0; f < k.face_count(); ++f) {
+    const auto& face = k.face(FaceId(f));
+    if (k.alive(FaceId(f)) && face.crack == 0)
+      skin.triangles.push_back({face.v[0].value, face.v[1].value, face.v[2].value});
+  }
+  return skin;
+}
+
 }  // namespace
 
 SurfaceReport check_near(const Complex& k, std::span<const FaceId> faces) {
@@ -325,6 +345,7 @@ SurfaceReport check_complex(const Complex& k, bool crossings) {
     if (!pairs.empty())
       report_problem(report,
                      "faces " + pair_name(pairs[0].first.value, pairs[0].second.value) + " intersect each other");
+    if (report.good()) check_shells(skin_of(k), report);
   }
   return report;
 }
@@ -332,8 +353,6 @@ SurfaceReport check_complex(const Complex& k, bool crossings) {
 void require_solid(const TriangleMesh& mesh) {
   const SurfaceReport report = check_surface(mesh, true);
   if (!report.good()) throw InputError(report.first_problem);
-  if (!mesh.two_sided() && signed_volume(mesh) <= 0)
-    throw InputError("the surface is inside out: its normals point inwards; reverse its triangles");
 }
 
 }  // namespace geo

@@ -1,187 +1,26 @@
 // repair() of kerf/check.h.
 //
 // Phases: weld, drop degenerate and duplicate triangles, orient components by flood fill (majority
-// wins), fill the loops of open edges, arrange shells by nesting depth. A shell at odd depth is a
-// cavity if it was oriented against the shell around it, else it is dropped.
+// wins), fill the loops of open edges, arrange shells by nesting and winding number.
 #include "kerf/check.h"
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 #include <span>
 #include <tuple>
 
-#include "geometry/bvh.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_index.h"
+#include "surface/components.h"
 #include "surface/fair_patch.h"
 #include "surface/polygon.h"
+#include "surface/shells.h"
 #include "surface/weld.h"
 
 namespace geo {
 namespace {
-
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-// An edge of a triangle.
-struct HalfEdge {
-  Edge edge;  // ascending
-  std::uint32_t triangle;
-  int corner;  // where it starts
-  friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
-    return std::tie(a.edge, a.triangle, a.corner) < std::tie(b.edge, b.triangle, b.corner);
-  }
-};
-
-// The half-edges of all triangles, sorted by edge.
-std::vector<HalfEdge> half_edges_of(const TriangleMesh& mesh) {
-  std::vector<HalfEdge> half_edges;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k)
-      half_edges.push_back({std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t, k});
-  std::sort(half_edges.begin(), half_edges.end());
-  return half_edges;
-}
-
-// Calls call(half-edges) for each edge.
-template <class Call>
-void each_edge(const std::vector<HalfEdge>& half_edges, const Call& call) {
-  for (std::size_t i = 0, end = 0; i < half_edges.size(); i = end) {
-    while (end < half_edges.size() && half_edges[end].edge == half_edges[i].edge) ++end;
-    call(std::span(half_edges).subspan(i, end - i));
-  }
-}
-
-// Removes the triangles that are not kept, with their attributes.
-void keep(TriangleMesh& mesh, const std::vector<char>& kept) {
-  const auto filter = [&](auto& values) {
-    if (values.empty()) return;
-    std::size_t count = 0;
-    for (std::size_t t = 0; t < kept.size(); ++t)
-      if (kept[t]) values[count++] = values[t];
-    values.resize(count);
-  };
-  Attributes& a = mesh.attributes;
-  filter(mesh.triangles);
-  filter(mesh.source);
-  filter(a.uv);
-  filter(a.uv2);
-  filter(a.normal);
-  filter(a.color);
-  filter(a.group);
-}
-
-// Reverses the orientation of a triangle; its normals turn outwards.
-void flip(TriangleMesh& mesh, std::uint32_t t) {
-  std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-  Attributes& a = mesh.attributes;
-  if (!a.uv.empty()) std::swap(a.uv[t][1], a.uv[t][2]);
-  if (!a.uv2.empty()) std::swap(a.uv2[t][1], a.uv2[t][2]);
-  if (!a.color.empty()) std::swap(a.color[t][1], a.color[t][2]);
-  if (a.normal.empty()) return;
-  std::swap(a.normal[t][1], a.normal[t][2]);
-  const auto& [i, j, k] = mesh.triangles[t];
-  const Vec3 outwards = face_normal(mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]);
-  for (Vec3& n : a.normal[t])
-    if (n.dot(outwards) < 0) n = -n;
-}
-
-// Drops triangles with a vertex twice. Among triangles with the same vertices it keeps one, of the
-// majority's orientation, or none where the orientations cancel.
-std::size_t drop_degenerate(TriangleMesh& mesh) {
-  std::map<Triangle, std::pair<int, std::vector<std::uint32_t>>> same;
-  std::vector<char> kept(mesh.triangles.size(), 0);
-  const auto orientation = [&](std::uint32_t t) {  // relative to ascending vertices
-    const auto& [a, b, c] = mesh.triangles[t];
-    return ((a > b) + (a > c) + (b > c)) % 2 == 0 ? 1 : -1;
-  };
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    Triangle sorted = mesh.triangles[t];
-    std::sort(sorted.begin(), sorted.end());
-    if (sorted[0] == sorted[1] || sorted[1] == sorted[2]) continue;
-    auto& [sum, triangles] = same[sorted];
-    sum += orientation(t), triangles.push_back(t);
-  }
-  for (const auto& [sorted, found] : same)
-    for (const auto t : found.second)
-      if (found.first * orientation(t) > 0) {
-        kept[t] = 1;
-        break;
-      }
-  const auto dropped = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), 0));
-  if (dropped > 0) keep(mesh, kept);
-  return dropped;
-}
-
-// Connected components of triangles, across edges of two triangles.
-struct Components {
-  std::vector<std::uint32_t> of;  // per triangle
-  std::uint32_t count = 0;
-};
-
-// Orients neighbours alike; a component turns the smaller part of its triangles.
-Components orient(TriangleMesh& mesh) {
-  const std::size_t n = mesh.triangles.size();
-  std::vector<std::array<std::uint32_t, 3>> beside(n, {~0u, ~0u, ~0u});
-  std::vector<std::array<char, 3>> against(n, {0, 0, 0});
-  each_edge(half_edges_of(mesh), [&](std::span<const HalfEdge> s) {
-    if (s.size() != 2) return;
-    const bool same = mesh.triangles[s[0].triangle][s[0].corner] == mesh.triangles[s[1].triangle][s[1].corner];
-    beside[s[0].triangle][s[0].corner] = s[1].triangle, beside[s[1].triangle][s[1].corner] = s[0].triangle;
-    against[s[0].triangle][s[0].corner] = against[s[1].triangle][s[1].corner] = same;
-  });
-  Components components{std::vector<std::uint32_t>(n, ~0u)};
-  std::vector<char> reversed(n, 0);
-  for (std::uint32_t seed = 0; seed < n; ++seed) {
-    if (components.of[seed] != ~0u) continue;
-    std::vector<std::uint32_t> component{seed};
-    components.of[seed] = components.count;
-    std::size_t flips = 0;
-    for (std::size_t i = 0; i < component.size(); ++i)
-      for (int k = 0; k < 3; ++k) {
-        const auto t = component[i], next = beside[t][k];
-        if (next == ~0u || components.of[next] != ~0u) continue;
-        components.of[next] = components.count;
-        reversed[next] = reversed[t] != against[t][k];
-        flips += reversed[next], component.push_back(next);
-      }
-    const bool majority = 2 * flips > component.size();
-    for (const auto t : component)
-      if (bool(reversed[t]) != majority) flip(mesh, t);
-    ++components.count;
-  }
-  return components;
-}
-
-// The rims of holes: loops of edges with one triangle, as the half-edges along them. A loop that
-// passes a vertex twice is divided in two.
-std::vector<std::vector<HalfEdge>> rims_of(const TriangleMesh& mesh) {
-  std::multimap<std::uint32_t, HalfEdge> from;  // by the end of the half-edge: a hole runs against its rim
-  each_edge(half_edges_of(mesh), [&](std::span<const HalfEdge> s) {
-    if (s.size() == 1) from.emplace(mesh.triangles[s[0].triangle][(s[0].corner + 1) % 3], s[0]);
-  });
-  std::vector<std::vector<HalfEdge>> rims;
-  while (!from.empty()) {
-    std::vector<HalfEdge> path;
-    std::map<std::uint32_t, std::size_t> position;  // of the vertices on the path
-    for (std::uint32_t v = from.begin()->first;;) {
-      if (const auto seen = position.find(v); seen != position.end()) {
-        const std::size_t first = seen->second;
-        rims.emplace_back(path.begin() + static_cast<std::ptrdiff_t>(first), path.end());
-        for (std::size_t i = first; i < path.size(); ++i)
-          position.erase(mesh.triangles[path[i].triangle][(path[i].corner + 1) % 3]);
-        path.resize(first);
-      }
-      const auto next = from.find(v);
-      if (next == from.end()) break;  // also where edges of three triangles end a rim
-      position[v] = path.size();
-      path.push_back(next->second);
-      from.erase(next);
-      v = mesh.triangles[path.back().triangle][path.back().corner];
-    }
-  }
-  return rims;
-}
 
 // Adds a patch over the hole with this rim. Its attributes extend those of the rim inwards.
 void add_patch(TriangleMesh& mesh, const std::vector<HalfEdge>& rim, const FairPatch& patch) {
@@ -341,8 +180,7 @@ void fill_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
   std::vector<std::vector<std::uint32_t>> polygons;
   std::vector<std::uint32_t> first{count()};
   for (const auto& rim : rims) {
-    auto& polygon = polygons.emplace_back();
-    for (const HalfEdge& s : rim) polygon.push_back(mesh.triangles[s.triangle][(s.corner + 1) % 3]);
+    const auto& polygon = polygons.emplace_back(polygon_of(mesh, rim));
     add_patch(mesh, rim, {{}, {}, triangles_of(mesh.vertices, polygon)});
     first.push_back(count());
   }
@@ -362,50 +200,61 @@ void fill_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
   keep(mesh, kept);
 }
 
-// Orients shells outwards. A shell inside another one is a cavity where their orientations
-// differed, else it is hidden and dropped.
-void arrange_shells(TriangleMesh& mesh, const Components& components, RepairStats& done) {
-  struct Shell {
-    std::vector<std::uint32_t> triangles;
-    std::vector<std::array<Vec3, 3>> corners;
-    double volume = 0;
-    Box3 box;
-    std::uint32_t within = ~0u;
-    int depth = 0;
-  };
-  std::vector<Shell> shells(components.count);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    Shell& s = shells[components.of[t]];
-    s.triangles.push_back(t), s.corners.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-    for (const Vec3& p : s.corners.back()) s.box.add(p);
+// The fate of a shell.
+struct ShellDecision {
+  bool kept = true;
+  bool outwards = true;      // its orientation in the result
+  bool like_around = false;  // in material and oriented like it
+};
+
+// Decides about each shell, those around it first. `level`: winding number inside a shell, relative
+// to the orientation of the outermost shell around it; material is where it is above 0.
+std::vector<ShellDecision> decide_shells(const std::vector<Shell>& shells, InnerShells inner) {
+  std::vector<std::uint32_t> order(shells.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return shells[a].depth < shells[b].depth; });
+  std::vector<ShellDecision> decisions(shells.size());
+  std::vector<int> level(shells.size(), 0);
+  std::vector<char> reversed(shells.size(), 0);  // whether the outermost shell around it is inside out
+  for (const auto s : order) {
+    const Shell& shell = shells[s];
+    ShellDecision& decision = decisions[s];
+    const bool has_parent = shell.parent != ~0u;
+    const int around = has_parent ? level[shell.parent] : 0;
+    reversed[s] = around > 0 ? reversed[shell.parent] : !shell.outwards;
+    const bool outwards = shell.outwards != bool(reversed[s]);
+    level[s] = around + (outwards ? 1 : -1);
+    const bool bounds = (around > 0) != (level[s] > 0);
+    decision.like_around = !bounds;
+    decision.kept = bounds;
+    decision.outwards = outwards;
+    if (inner == InnerShells::by_orientation) continue;
+    decision.kept = inner == InnerShells::cavities || shell.depth == 0;
+    decision.outwards = shell.depth % 2 == 0;
   }
-  for (Shell& s : shells)
-    for (const auto& [a, b, c] : s.corners) s.volume += (a - s.box.lo).dot((b - s.box.lo).cross(c - s.box.lo)) / 6;
-  for (Shell& outer : shells) {
-    TriangleBvh tree;
-    for (Shell& s : shells) {
-      if (&s == &outer ||
-          !((outer.box.lo.array() < s.box.lo.array()).all() && (s.box.hi.array() < outer.box.hi.array()).all()))
-        continue;
-      if (tree.empty()) tree = TriangleBvh(outer.corners);
-      if (!std::all_of(s.corners.begin(), s.corners.end(),
-                       [&](const auto& t) { return tree.inside(t[0]) && tree.inside(t[1]) && tree.inside(t[2]); }))
-        continue;
-      ++s.depth;
-      if (s.within == ~0u || std::abs(outer.volume) < std::abs(shells[s.within].volume))
-        s.within = static_cast<std::uint32_t>(&outer - shells.data());
-    }
+  return decisions;
+}
+
+// Orients shells by their places; leaves out those that bound no material.
+void arrange_shells(TriangleMesh& mesh, const Components& components, InnerShells inner, RepairStats& done) {
+  const auto shells = arranged_shells(mesh, components.of, components.count, ShellContainment::all_vertices);
+  const auto decisions = decide_shells(shells, inner);
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    const ShellDecision& decision = decisions[s];
+    if (decision.kept && decision.like_around)
+      ++done.hollowed_shells;
+    else if (decision.kept)
+      done.inverted_shells += decision.outwards != shells[s].outwards;
+    else if (decision.like_around)
+      ++done.dropped_shells;
+    else
+      ++done.filled_shells;
   }
   std::vector<char> kept(mesh.triangles.size(), 1);
-  for (const Shell& s : shells) {
-    const bool inner = s.depth % 2 == 1, hidden = inner && (s.volume > 0) == (shells[s.within].volume > 0);
-    if (hidden) ++done.dropped_shells;
-    for (const auto t : s.triangles)
-      if (hidden)
-        kept[t] = 0;
-      else if ((s.volume > 0) == inner)
-        flip(mesh, t);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto s = components.of[t];
+    kept[t] = decisions[s].kept;
+    if (decisions[s].kept && decisions[s].outwards != shells[s].outwards) flip(mesh, t);
   }
   keep(mesh, kept);
 }
@@ -440,15 +289,15 @@ void drop_loose_vertices(TriangleMesh& mesh) {
 
 }  // namespace
 
-RepairStats repair(TriangleMesh& mesh, double weld_distance, bool smooth_fill) {
+RepairStats repair(TriangleMesh& mesh, const RepairOptions& options) {
   RepairStats done;
-  done.welded_vertices = weld_seams(mesh, weld_distance);
+  done.welded_vertices = weld_seams(mesh, options.weld_distance);
   done.dropped_triangles = drop_degenerate(mesh);
   const std::vector<Triangle> before = turned_to_first(mesh.triangles);
   Components components = orient(mesh);
-  fill_holes(mesh, done, smooth_fill);
+  fill_holes(mesh, done, options.smooth_fill);
   if (done.filled_holes > 0) components = orient(mesh);  // a patch may connect components
-  arrange_shells(mesh, components, done);
+  arrange_shells(mesh, components, options.inner, done);
   done.flipped_triangles = count_flipped(before, mesh.triangles);
   drop_loose_vertices(mesh);
   return done;

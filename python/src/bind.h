@@ -38,5 +38,6 @@ void bind_scene(py::module_& module);            ///< Scene
 void bind_frame_stats(py::module_& module);      ///< statistics of frames
 void bind_simulation(py::module_& module);       ///< Simulation
 void bind_run_files(py::module_& module);        ///< files of runs
+void bind_pickles(py::module_& module);          ///< pickling and copying; last
 
 }  // namespace kerf_python

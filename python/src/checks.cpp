@@ -42,6 +42,21 @@ const geo::TriangleMesh& countable(const Mesh& mesh) {
   return mesh.mesh;
 }
 
+py::list shells_of(const geo::SurfaceReport& report) {
+  static constexpr const char* kinds[] = {"outer", "cavity", "inverted", "hidden"};
+  py::list out;
+  for (const geo::Shell& shell : report.shells) {
+    py::dict one;
+    one["kind"] = kinds[static_cast<int>(shell.kind)];
+    one["first_face"] = shell.first_triangle;
+    one["faces"] = shell.triangles;
+    one["parent"] = shell.parent == ~0u ? py::object(py::none()) : py::object(py::int_(shell.parent));
+    one["depth"] = shell.depth;
+    out.append(one);
+  }
+  return out;
+}
+
 void bind_report(py::module_& module) {
   using Report = geo::SurfaceReport;
   py::class_<Report>(module, "SurfaceReport", "Outcome of a check of a mesh or a complex. True where it is valid.")
@@ -51,6 +66,12 @@ void bind_report(py::module_& module) {
       .def_readonly("degenerate_faces", &Report::degenerate_faces, "Number of faces of zero area, exactly.")
       .def_readonly("self_intersections", &Report::self_intersections,
                     "Number of pairs of faces that intersect; None: not tested.")
+      .def_property_readonly("shells", &shells_of,
+                             "The connected parts of the skin, by their first faces, each a dict: kind, 'outer' or "
+                             "'cavity', or,\n"
+                             "oriented wrongly, 'inverted' or 'hidden'; first_face; faces; parent, the index of the\n"
+                             "innermost shell around it, or None; depth. Empty where the mesh has another fault, or\n"
+                             "crossings were not tested.")
       .def_readonly("first_problem", &Report::first_problem, "Names indices; empty for a valid surface.")
       .def_property_readonly("good", &Report::good, "Whether there is no problem.")
       .def("__bool__", &Report::good, "Whether there is no problem.")

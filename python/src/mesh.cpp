@@ -150,7 +150,7 @@ void bind_mesh(py::module_& module) {
   solid.def(py::init([](py::object v, py::object f, py::object uv, py::object n, py::object c, py::object g,
                         py::object names, const std::string& materials) {
               const auto none = py::none();
-              return std::make_shared<Solid>(made(v, f, uv, n, c, g, names, materials, none, none, none));
+              return solid_or_remedy(made(v, f, uv, n, c, g, names, materials, none, none, none));
             }),
             py::arg("vertices"), py::arg("faces"), py::kw_only(), optional("uv"), optional("normals"),
             optional("colors"), optional("groups"), optional("group_names"), py::arg("materials") = "",

@@ -30,6 +30,10 @@ struct Solid : Mesh {
   std::shared_ptr<const geo::Complex> uncut_;
 };
 
+/// The model of a mesh. Throws InputError, whose message names the remedy of the module, where it
+/// is none.
+std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh);
+
 /// The arrays of a mesh as Python gives them; None where there is none.
 struct MeshArguments {
   py::object vertices, faces, uv, normals, colors, groups, group_names, patch, site, source;

@@ -23,16 +23,43 @@ const geo::TriangleMesh& plain(const Mesh& mesh, const char* call) {
   return mesh.mesh;
 }
 
+geo::InnerShells inner_from(const std::string& name, const char* call) {
+  if (name == "oriented") return geo::InnerShells::by_orientation;
+  if (name == "cavities") return geo::InnerShells::cavities;
+  if (name == "filled") return geo::InnerShells::filled;
+  throw geo::InputError(std::string(call) + ": inner must be 'oriented', 'cavities' or 'filled'");
+}
+
+geo::OpenParts open_from(const std::string& name) {
+  if (name == "auto") return geo::OpenParts::by_area;
+  if (name == "closed") return geo::OpenParts::closed;
+  if (name == "sheets") return geo::OpenParts::sheets;
+  throw geo::InputError("repaired: open must be 'auto', 'closed' or 'sheets'");
+}
+
+void require_weld(double weld, const char* call) {
+  if (!(weld >= 0 && weld <= geo::largest_coordinate))
+    throw geo::InputError(std::string(call) + ": weld must be 0 or more");
+}
+
+// A valid model if a mesh is one; else InputError, with the remedy of the module.
+std::shared_ptr<Solid> checked_solid(const py::object& given) {
+  const auto mesh = mesh_argument(given, "mesh");
+  plain(*mesh, "Solid");
+  return solid_or_remedy(geo::TriangleMesh(mesh->mesh));
+}
+
 py::object wrap(const Shared& self, double voxel) {
   return py::module_::import("kerf._formats").attr("wrapped")(self, voxel);
 }
 
-std::pair<Shared, geo::RepairStats> repaired(const Mesh& self, double weld, bool smooth) {
+std::pair<Shared, geo::RepairStats> repaired(const Mesh& self, double weld, bool smooth, const std::string& inner) {
   plain(self, "repair");
-  if (!(weld >= 0 && weld <= geo::largest_coordinate)) throw geo::InputError("repair: weld must be 0 or more");
+  require_weld(weld, "repair");
+  const geo::RepairOptions options{weld, smooth, inner_from(inner, "repair")};
   return without_gil([&] {
     auto mesh = self.mesh;
-    const auto stats = geo::repair(mesh, weld, smooth);
+    const auto stats = geo::repair(mesh, options);
     return std::pair{std::make_shared<Mesh>(std::move(mesh)), stats};
   });
 }
@@ -47,12 +74,10 @@ geo::TriangleMesh refined(const Mesh& self, double longest) {
 }
 
 // As geo::repaired_solid(), with a remedy in the message.
-Shared united(const Mesh& self, double weld, bool smooth) {
-  plain(self, "repaired");
-  if (!(weld >= 0 && weld <= geo::largest_coordinate)) throw geo::InputError("repaired: weld must be 0 or more");
+Shared united(const Mesh& self, const geo::RepairOptions& options) {
   return without_gil([&] {
     try {
-      return std::make_shared<Mesh>(geo::repaired_solid(self.mesh, weld, smooth));
+      return std::make_shared<Mesh>(geo::repaired_solid(self.mesh, options));
     } catch (const geo::GeometryError& e) {
       throw geo::InputError(std::string("repaired: ") + e.what() +
                             "; wrap it in a new surface: voxel=0.005 * diagonal");
@@ -65,18 +90,23 @@ Shared self_union(const Mesh& self) {
   return without_gil([&] { return std::make_shared<Mesh>(geo::self_union(self.mesh)); });
 }
 
-std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool smooth, double voxel, double longest) {
-  Shared mesh;
-  if (voxel != 0) {
-    mesh = repaired(*mesh_argument(model, "mesh"), weld, smooth).first;
-    if (mesh->mesh.triangles.empty()) throw geo::InputError("repaired: no triangle of the mesh bounds anything");
-    mesh = wrap(mesh, voxel).cast<Shared>();
-  } else {
-    mesh = united(*mesh_argument(model, "mesh"), weld, smooth);
-  }
+std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool smooth, double voxel, double longest,
+                                      const std::string& inner, const std::string& open) {
+  Shared mesh = mesh_argument(model, "mesh");
+  plain(*mesh, "repaired");
+  require_weld(weld, "repaired");
+  const geo::RepairOptions options{weld, smooth, inner_from(inner, "repaired")};
+  const geo::OpenParts parts = open_from(open);
+  if (voxel != 0)
+    mesh =
+        py::module_::import("kerf._formats")
+            .attr("wrapped_solid")(mesh, voxel, weld, smooth, static_cast<int>(options.inner), static_cast<int>(parts))
+            .cast<Shared>();
+  else
+    mesh = united(*mesh, options);
   if (longest != 0) mesh = std::make_shared<Mesh>(refined(*mesh, longest));
   try {
-    const bool known = voxel == 0 && longest == 0;  // valid, by repaired_solid()
+    const bool known = longest == 0;  // valid, by repaired_solid() or wrapped_solid()
     return std::make_shared<Solid>(std::move(mesh->mesh), known);
   } catch (const geo::InputError& e) {
     const std::string what = e.what();
@@ -128,7 +158,12 @@ void bind_repair_stats(py::module_& module) {
       .def_readonly("filled_holes", &S::filled_holes, "Holes that were filled.")
       .def_readonly("added_triangles", &S::added_triangles, "Triangles in holes.")
       .def_readonly("smooth_fills", &S::smooth_fills, "Holes filled by fair patches.")
-      .def_readonly("dropped_shells", &S::dropped_shells, "Solid shells wholly inside another one.")
+      .def_readonly("inverted_shells", &S::inverted_shells, "Shells inside out that were turned.")
+      .def_readonly("dropped_shells", &S::dropped_shells,
+                    "Shells in solid material, oriented like it, that were left out.")
+      .def_readonly("hollowed_shells", &S::hollowed_shells,
+                    "Shells in solid material, oriented like it, that became cavities, or cores of cavities.")
+      .def_readonly("filled_shells", &S::filled_shells, "Other inner shells left out by inner='filled'.")
       .def(
           "__bool__", [](const S& self) { return !self.nothing(); }, "Whether anything was changed.")
       .def("__repr__", [](const S& s) {
@@ -177,7 +212,7 @@ void add_measures(py::class_<Mesh, Shared>& mesh) {
 }
 
 void add_changes(py::class_<Mesh, Shared>& mesh) {
-  mesh.def("repair", &repaired, py::arg("weld") = 0.0, py::arg("smooth") = false,
+  mesh.def("repair", &repaired, py::arg("weld") = 0.0, py::arg("smooth") = false, py::arg("inner") = "oriented",
            "Repairs the topology of a plain mesh; returns a tuple (Mesh, RepairStats). Welds seams, open ones also "
            "where\n"
            "vertices are up to `weld` apart, model units; drops triangles that bound nothing; orients neighbours "
@@ -197,9 +232,11 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
           "A plain mesh with edges of at most `longest`, model units: longer ones are bisected. The shape stays to\n"
           "rounding; attributes are interpolated. Raises InputError where over 20 million triangles would result.")
       .def("wrap", &wrap, py::arg("voxel"),
-           "A new surface around a closed one, which may intersect itself: the zero level of its distance field, with\n"
-           "voxels of edge `voxel`, model units, which also rounds edges by that length. Its source is the nearest\n"
-           "triangle, which gives the attributes. Returns a Mesh. Raises InputError unless voxel is 0.0005 to 0.1 of "
+           "A new surface around closed parts, which may intersect themselves, and open sheets: the zero level of "
+           "their\n"
+           "distance field, with voxels of edge `voxel`, model units, which also rounds edges by that length. A sheet\n"
+           "becomes a plate of that thickness. Its source is the nearest triangle, which gives the attributes. Returns "
+           "a Mesh. Raises InputError unless voxel is 0.0005 to 0.1 of "
            "the\n"
            "diagonal.")
       .def(
@@ -229,22 +266,19 @@ void bind_mesh_methods(py::module_& module) {
   add_measures(mesh);
   add_changes(mesh);
   py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
-      .def(py::init([](const py::object& given) {
-             const auto mesh = mesh_argument(given, "mesh");
-             plain(*mesh, "Solid");
-             return std::make_shared<Solid>(geo::TriangleMesh(mesh->mesh));
-           }),
-           py::arg("mesh"), "Of a Mesh, or an object with vertices and faces.")
+      .def(py::init(&checked_solid), py::arg("mesh"), "Of a Mesh, or an object with vertices and faces.")
       .def(
           "refine", [](const Solid& self, double longest) { return std::make_shared<Solid>(refined(self, longest)); },
           py::arg("longest"), "As Mesh.refine(); the result is checked to be a valid model.")
       .def_static(
           "repaired", &repaired_solid, py::arg("mesh"), py::arg("weld") = 0.0, py::arg("smooth") = false,
-          py::arg("voxel") = 0.0, py::arg("longest") = 0.0,
-          "A valid model of a surface with faults: Mesh.repair(weld, smooth), then Mesh.wrap(voxel), or, where voxel "
-          "is\n"
-          "0 and triangles cross, Mesh.self_union(), and Mesh.refine(longest) unless that is 0. Lengths are in model\n"
-          "units. Raises InputError where the result is no valid model.");
+          py::arg("voxel") = 0.0, py::arg("longest") = 0.0, py::arg("inner") = "oriented", py::arg("open") = "auto",
+          "A valid model of a surface with faults: Mesh.repair(weld, smooth, inner), then Mesh.wrap(voxel), or, where\n"
+          "voxel is 0 and triangles cross, Mesh.self_union(), and Mesh.refine(longest) unless that is 0. Lengths are "
+          "in\n"
+          "model units. open: with a voxel, parts with open edges are sheets where closing them takes half of their\n"
+          "area ('auto'), never ('closed'), or always ('sheets'); a sheet becomes a plate one voxel thick. Raises\n"
+          "InputError where the result is no valid model.");
 }
 
 }  // namespace kerf_python

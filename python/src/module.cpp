@@ -39,4 +39,5 @@ PYBIND11_MODULE(_kerf, module) {
   bind_frame_stats(module);
   bind_simulation(module);
   bind_run_files(module);
+  bind_pickles(module);
 }

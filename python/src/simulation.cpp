@@ -178,13 +178,6 @@ RunModels models_of(const geo::Scene& scene, const Meshes& given) {
   }
   out.fingerprint = geo::fingerprint(hashes);
   out.placed = geo::place_models(scene, std::move(meshes));
-  if (out.placed.bodies.size() > 1) {
-    try {
-      geo::require_solid(out.placed.all);
-    } catch (const geo::InputError& e) {
-      throw geo::InputError(std::string("the placed bodies, taken together: ") + e.what());
-    }
-  }
   return out;
 }
 
@@ -285,6 +278,11 @@ void bind_simulation(py::module_& module) {
           "the end of the frame. Raises GeometryError where a position is no longer finite.")
       .def("run", &run_frames, py::arg("frames") = py::none(), py::kw_only(), py::arg("progress") = py::none(),
            py::arg("each") = py::none(), run_doc)
+      .def_property_readonly(
+          "touching", [](const Simulation& self) { return geo::touching_note(self.scene->scene, self.models.placed); },
+          "A line that names the bodies that touched when they were placed, and the gap that was made between them; "
+          "''\n"
+          "where none did.")
       .def("save", &save, py::arg("path"),
            "Writes a checkpoint (.kerf), from which resume() continues exactly; with motions, where objects were moved "
            "by\n"

@@ -1,5 +1,6 @@
 // Solids are tested once, when they are made, without the GIL.
 #include "kerf/check.h"
+#include "kerf/error.h"
 #include "mesh.h"
 
 namespace kerf_python {
@@ -8,6 +9,14 @@ Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(std::move(m)) {
   if (!known) {
     py::gil_scoped_release release;
     geo::require_solid(mesh);
+  }
+}
+
+std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh) {
+  try {
+    return std::make_shared<Solid>(std::move(mesh));
+  } catch (const geo::InputError& e) {
+    throw geo::InputError(std::string(e.what()) + ", or try kerf.Solid.repaired()");
   }
 }
 

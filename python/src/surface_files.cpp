@@ -82,19 +82,16 @@ std::shared_ptr<Solid> solid_of(geo::SurfaceFile&& file, const std::string& name
   forget_sites(file.mesh);
   if (file.mesh.two_sided()) throw geo::InputError(name + ": is cut already; give it to kerf.Complex.load()");
   try {
-    return std::make_shared<Solid>(std::move(file.mesh));
+    return solid_or_remedy(std::move(file.mesh));
   } catch (const geo::InputError& e) {
-    throw geo::InputError(name + ": " + e.what() + ", or try kerf.Solid.repaired()");
+    throw geo::InputError(name + ": " + e.what());
   }
 }
 
 // A Complex where the surface is cut, a Solid where it is one, else a Mesh.
 py::object any_surface(const Path& path, const std::string& unit) {
   auto file = read(path, unit);
-  const bool valid = without_gil([&] {
-    const auto report = geo::check_surface(file.mesh, true);
-    return report.good() && (file.mesh.two_sided() || geo::signed_volume(file.mesh) > 0);
-  });
+  const bool valid = without_gil([&] { return geo::check_surface(file.mesh, true).good(); });
   if (!valid) return py::cast(std::make_shared<Mesh>(std::move(file.mesh)));
   if (file.fronts.empty()) forget_sites(file.mesh);
   if (file.mesh.two_sided()) return py::cast(with_fronts(std::move(file), path.text));

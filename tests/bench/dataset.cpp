@@ -100,7 +100,7 @@ Row measure(const Model& model, geo::Pattern pattern, int seeds) {
 int dataset(const Options& options) {
   geo::set_threads(1);
   std::vector<Model> models = ten_models();
-  for (const auto& path : options.models) models.push_back(read_model(path, path, false));
+  for (const auto& path : options.models) models.push_back(read_model(path, path, false, {}));
   Figures figures;
   Row all;
   for (const geo::Pattern pattern : patterns) {

@@ -96,6 +96,84 @@ TEST_CASE("a surface is wrapped around parts that overlap, and has their dress")
   }
 }
 
+namespace {
+
+// A grid of squares over the unit square, turned and moved by `place`.
+TriangleMesh sheet_at(const Eigen::Isometry3d& place, double wave) {
+  TriangleMesh mesh;
+  constexpr std::uint32_t n = 20;
+  for (std::uint32_t i = 0; i <= n; ++i)
+    for (std::uint32_t j = 0; j <= n; ++j) {
+      const double x = double(i) / n, y = double(j) / n;
+      mesh.vertices.push_back(place * Vec3(x, y, wave * std::sin(6.3 * x)));
+    }
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const std::uint32_t a = i * (n + 1) + j, b = a + n + 1;
+      mesh.triangles.push_back({a, b, b + 1});
+      mesh.triangles.push_back({a, b + 1, a + 1});
+    }
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("an open sheet becomes a plate one voxel thick, at every size, wherever it lies, from one side or two") {
+  Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
+  turned.rotate(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
+  turned.translation() = Vec3(100.03, -7, 0.017);
+  for (const auto& place : {Eigen::Isometry3d(Eigen::Isometry3d::Identity()), turned})
+    for (const double wave : {0.0, 0.1})
+      for (const double share : {0.005, 0.0137, 0.02, 0.05, 0.1}) {
+        TriangleMesh sheet = sheet_at(place, wave);
+        const double voxel = share * bounding_box(sheet).diagonal(), surface = area(sheet);
+        CAPTURE(wave, share);
+        WrapStats stats;
+        const TriangleMesh plate = wrapped_solid(sheet, voxel, {}, OpenParts::by_area, &stats);
+        CHECK(stats.sheets.sheets == 1);
+        // The rim is a half pipe of that thickness, 4 to 4.2 long, of which coarse voxels cut edges
+        // off.
+        const double rim = 3.1416 / 8 * voxel * voxel * (wave > 0 ? 4.1 : 4.0);
+        CHECK(signed_volume(plate) > 0.95 * surface * voxel);
+        CHECK(signed_volume(plate) < 1.02 * (surface * voxel + rim));
+        CHECK(check_surface(plate, true).first_problem == "");
+        for (const auto& [a, b, c] : std::vector(sheet.triangles)) sheet.triangles.push_back({a, c, b});
+        CHECK(signed_volume(wrapped_solid(sheet, voxel)) == Approx(signed_volume(plate)).epsilon(1e-6));
+      }
+}
+
+TEST_CASE("very fine voxels of a large sheet make the same plate with vertices as far apart as voxels") {
+  const TriangleMesh sheet = sheet_at(Eigen::Isometry3d::Identity(), 0);
+  const double voxel = 0.0009;  // more than four million half voxels
+  const TriangleMesh plate = wrapped(sheet, voxel);
+  CHECK(signed_volume(plate) == Approx(voxel).epsilon(0.01));
+  CHECK(bounding_box(plate).hi.z() == Approx(voxel / 2).epsilon(1e-3));
+}
+
+TEST_CASE("plates, solids and shells thinner than a voxel are wrapped together") {
+  TriangleMesh mesh = make_block({1, 1, 1}, 0.5);
+  const double block = signed_volume(mesh);
+  const auto append = [&](const TriangleMesh& other, const Vec3& place) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& p : other.vertices) mesh.vertices.push_back(place + p);
+    for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+  };
+  append(sheet_at(Eigen::Isometry3d::Identity(), 0), {2, 0, 0.3});
+  append(make_block({1, 1, 1e-3}, 1), {0, 2, 0.3});
+  const double voxel = 0.04;
+  const TriangleMesh solid = wrapped_solid(mesh, voxel);
+  CHECK(signed_volume(solid) == Approx(block + voxel + (voxel + 1e-3)).epsilon(0.02));
+  CHECK(find_shells(solid).size() == 3);
+}
+
+TEST_CASE("a surface with a hole is closed before it is wrapped, unless all open parts are to be sheets") {
+  TriangleMesh ball = make_sphere(8);
+  const double whole = signed_volume(ball);
+  std::erase_if(ball.triangles, [&](const Triangle& t) { return ball.vertices[t[0]].z() > 0.8; });
+  CHECK(signed_volume(wrapped_solid(ball, 0.05)) == Approx(whole).epsilon(0.06));
+  CHECK(signed_volume(wrapped_solid(ball, 0.05, {}, OpenParts::sheets)) == Approx(0.05 * area(ball)).epsilon(0.06));
+}
+
 TEST_CASE("a grid is chosen by name, its surface by level") {
   const Scratch scratch;
   openvdb::initialize();

@@ -59,6 +59,28 @@ class Meshes(unittest.TestCase):
             with self.assertRaises(kerf.InputError):
                 cube().refine(longest)
 
+    def test_shells(self):
+        three = kerf.Mesh(np.vstack([3 * CUBE, CUBE + 1, CUBE + 5]), np.vstack([CUBE_FACES, CUBE_FACES + 8, CUBE_FACES[:, ::-1] + 16]))
+        report = three.check()
+        self.assertFalse(report.good)
+        self.assertEqual([(s["kind"], s["parent"], s["depth"], s["faces"]) for s in report.shells],
+                         [("outer", None, 0, 12), ("hidden", 0, 1, 12), ("inverted", None, 0, 12)])
+        for inner, volume in (("oriented", 28), ("cavities", 27), ("filled", 28)):
+            mended, stats = three.repair(inner=inner)
+            self.assertEqual((mended.volume, stats.inverted_shells), (volume, 1))
+            self.assertEqual(kerf.Solid.repaired(three, inner=inner).volume, volume)
+        with self.assertRaises(kerf.InputError):
+            three.repair(inner="other")
+
+    def test_plates(self):
+        sheet = plane()
+        size, voxel = sheet.area, 0.05
+        self.assertAlmostEqual(kerf.Solid.repaired(sheet, voxel=voxel).volume / (size * voxel), 1, delta=0.1)
+        self.assertAlmostEqual(sheet.wrap(voxel).volume / (size * voxel), 1, delta=0.1)
+        vessel = kerf.Mesh(CUBE, CUBE_FACES[:10])
+        self.assertGreater(kerf.Solid.repaired(vessel, voxel=voxel).volume, 0.9)
+        self.assertLess(kerf.Solid.repaired(vessel, voxel=voxel, open="sheets").volume, 0.3)
+
     def test_wrap(self):
         two = kerf.Mesh(np.vstack([CUBE, CUBE + 0.5]), np.vstack([CUBE_FACES, CUBE_FACES + 8]))
         self.assertGreater(two.crossings(), 0)

@@ -381,6 +381,16 @@ class Hands(unittest.TestCase):
             run.write_recording("x.toml")
         self.assertFalse(os.path.exists("x.toml"))
 
+    def test_touching_bodies(self):
+        scene = "[[body]]\nmesh = 'a'\nnodes = 40\n[[body]]\nmesh = 'b'\nnodes = 40\nposition = [0, 0, HEIGHT]\n[time]\nframes = 1\n"
+        block = kerf.shapes.block()
+        height = float(np.ptp(block.vertices[:, 2]))
+        run = kerf.Simulation(scene.replace("HEIGHT", str(height)), models=[block, block])
+        self.assertIn("touch", run.touching)
+        self.assertEqual(kerf.Simulation(scene.replace("HEIGHT", str(height + 1)), models=[block, block]).touching, "")
+        with self.assertRaisesRegex(kerf.InputError, r"body1 \(a\) and body2 \(b\) overlap"):
+            kerf.Simulation(scene.replace("HEIGHT", str(height / 2)), models=[block, block])
+
 
 def run_path(folder, frame):
     """The file of a frame in a folder of kerf-sim."""

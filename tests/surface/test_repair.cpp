@@ -113,7 +113,7 @@ TEST_CASE("a hole closed smoothly goes on from what is around it, as fine as its
     const std::size_t rows = open.triangles.size();
     TriangleMesh flat = open, mesh = open;
     repair(flat);
-    const RepairStats done = repair(mesh, 0, true);
+    const RepairStats done = repair(mesh, {.smooth_fill = true});
     CHECK(done.filled_holes == 1);
     CHECK(done.smooth_fills == 1);
     CHECK(check_surface(mesh, true).first_problem == "");
@@ -142,11 +142,11 @@ TEST_CASE("a smooth patch that would cross something is not taken") {
       mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t));
   }
   TriangleMesh dome = mesh;
-  CHECK(repair(dome, 0, true).smooth_fills == 1);
+  CHECK(repair(dome, {.smooth_fill = true}).smooth_fills == 1);
   CHECK(check_surface(dome, true).first_problem == "");
   CHECK(signed_volume(dome) > 1.05);
   add(mesh, make_sphere(6), 0.3, {0.5, 0.5, 1.32}, false);
-  const RepairStats done = repair(mesh, 0, true);
+  const RepairStats done = repair(mesh, {.smooth_fill = true});
   CHECK(done.filled_holes == 1);
   CHECK(done.smooth_fills == 0);
   CHECK(check_surface(mesh, true).first_problem == "");
@@ -169,7 +169,7 @@ TEST_CASE("random holes are closed smoothly or flat, without a crossing where th
   });
   TriangleMesh flat = mesh;
   repair(flat);
-  const RepairStats done = repair(mesh, 0, true);
+  const RepairStats done = repair(mesh, {.smooth_fill = true});
   CAPTURE(done.filled_holes, done.smooth_fills);
   if (check_surface(flat, true).first_problem == "") CHECK(check_surface(mesh, true).first_problem == "");
 }
@@ -187,7 +187,7 @@ TEST_CASE("seams that are a little apart are welded within reach") {
   TriangleMesh apart = soup;
   repair(apart);
   CHECK(apart.vertices.size() != ball.vertices.size());
-  CHECK(repair(soup, 1e-5).welded_vertices == 3 * ball.triangles.size() - ball.vertices.size());
+  CHECK(repair(soup, {.weld_distance = 1e-5}).welded_vertices == 3 * ball.triangles.size() - ball.vertices.size());
   CHECK(check_surface(soup, true).first_problem == "");
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("anything in gives an end") {
     TriangleMesh mesh;
     for (int v = 0; v < 7; ++v) mesh.vertices.push_back({random.uniform(), random.uniform(), double(random.below(2))});
     for (int t = 0; t < 12; ++t) mesh.triangles.push_back({random.below(7), random.below(7), random.below(7)});
-    repair(mesh, seed % 2 ? 0.1 : 0);
+    repair(mesh, {.weld_distance = seed % 2 ? 0.1 : 0.0});
     for (const auto& t : mesh.triangles)
       for (const auto v : t) REQUIRE(v < mesh.vertices.size());
   }
@@ -252,7 +252,7 @@ TEST_CASE("a hole whose smooth patch would have millions of triangles is closed 
     const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % n);
     mesh.triangles.insert(mesh.triangles.end(), {{a, b, a + 1}, {b, b + 1, a + 1}, {b, a, 2 * n}});
   }
-  const RepairStats done = repair(mesh, 0, true);
+  const RepairStats done = repair(mesh, {.smooth_fill = true});
   CHECK(done.filled_holes == 1);
   CHECK(done.smooth_fills == 0);
   CHECK(check_surface(mesh, false).first_problem == "");

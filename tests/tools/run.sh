@@ -208,6 +208,17 @@ repairs)
   grep -q '1 hole smoothly closed with [0-9]* triangles' said.txt || fail "kerf-repair --smooth says: $(cat said.txt)"
   for file in ball smooth flat; do kerf-info --check --json $file.ply | grep -o '"volume":[0-9.]*'; done | python3 -c 'import sys; v = [float(l.split(":")[1]) for l in sys.stdin]; assert len(v) == 3 and v[2] < v[1] - 0.1 and abs(v[1] - v[0]) < 0.05, v' || fail "the smooth patch"
   cmp two.ply one.ply || fail "threads change bytes"
+  # Sheets become plates at every size; a card with two faces, too.
+  printf 'v 0 0 0\nv 1 0 0\nv 1 1 0.2\nv 0 1 0.2\nf 1 2 3\nf 1 3 4\nf 1 3 2\nf 1 4 3\n' >card.obj
+  for voxel in 0.003 0.005 0.01 0.02 0.05 0.1; do
+    for sheet in sheet card; do
+      kerf-repair $sheet.obj --voxel $voxel -o plate.ply 2>said.txt || fail "kerf-repair --voxel $voxel of a $sheet: $(cat said.txt)"
+      grep -q '1 open sheet made a plate one voxel thick' said.txt || fail "kerf-repair says: $(cat said.txt)"
+      kerf-info --check --json plate.ply | python3 -c "import json, sys; v = json.load(sys.stdin)['volume']; e = $voxel * 2 ** 0.5; assert 0.95 * e < v < 1.3 * e + 1.6 * e * e, (v, e)" || fail "a plate of $voxel"
+    done
+  done
+  printf 'v 0 0 0\nv 1 0 0\nf 1 1 2\n' >line.obj
+  expect 65 "no triangle has three different corners" kerf-repair line.obj -o x.ply
   for options in "--weld -1" "--voxel 0.2" "--voxel nan"; do expect 2 "${options%% *}" kerf-repair box.obj $options -o x.ply; done
   expect 66 "cannot" kerf-repair missing.obj -o x.ply
   ;;

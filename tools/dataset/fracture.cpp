@@ -31,8 +31,8 @@ std::string name_of(std::size_t piece) { return "piece " + std::to_string(piece)
 
 }  // namespace
 
-Model read_model(const std::string& path, const std::string& name, bool repair) {
-  geo::SurfaceFile file = tool::read_solid(path, repair);
+Model read_model(const std::string& path, const std::string& name, bool repair, const tool::Say& say) {
+  geo::SurfaceFile file = tool::read_solid(path, repair, say);
   tool::require_whole(file.mesh, path, "give the model before the cut");
   file.mesh.attributes = {};
   file.mesh.source.clear();

@@ -9,6 +9,7 @@
 #include <kerf/complex.h>
 #include <kerf/pieces.h>
 #include "dataset/recipe.h"
+#include "model.h"
 
 namespace dataset {
 
@@ -39,8 +40,9 @@ struct Fracture {
   std::vector<geo::Bond> bonds;  ///< ordered by their pieces
 };
 
-/// Reads a model and makes its complex; throws InputError where it is no solid, or cut.
-Model read_model(const std::string& path, const std::string& name, bool repair);
+/// Reads a model and makes its complex; `say` takes what a repair decided about shells. Throws
+/// InputError where it is no solid, or cut.
+Model read_model(const std::string& path, const std::string& name, bool repair, const tool::Say& say);
 
 /// Breaks a model, and checks the result: every piece is closed and has a volume, volumes sum to
 /// the model's within 1e-9 of it, every crack face lies between two pieces. Throws GeometryError

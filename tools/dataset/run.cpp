@@ -67,7 +67,8 @@ class Making {
     Model model;
     std::string refused;
     try {
-      model = read_model(file.path, file.name, settings_.repair);
+      model = read_model(file.path, file.name, settings_.repair,
+                         [&](const std::string& line) { totals_.notes.push_back(line); });
     } catch (const geo::MissingInputError&) {
       throw;  // it may be there tomorrow
     } catch (const std::runtime_error& e) {

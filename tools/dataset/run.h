@@ -18,7 +18,8 @@ struct Totals {
   std::size_t refused_models = 0;
   std::size_t bytes = 0;  ///< written, records included
   double seconds = 0, cpu_seconds = 0;
-  bool complete = false;  ///< no shard of the whole data set is missing
+  std::vector<std::string> notes;  ///< what repair decided about shells, a line for each model
+  bool complete = false;           ///< no shard of the whole data set is missing
 };
 
 /// Makes the shards in the range `part` of the plan's rows that have no record yet. A shard's data

@@ -6,6 +6,7 @@
 #include <kerf/body_file.h>
 #include <kerf/error.h>
 #include <kerf/files.h>
+#include <kerf/simulation.h>
 #include "info/files.h"
 #include "model.h"
 #include "tool.h"
@@ -115,7 +116,12 @@ std::string report_scene(const std::string& path, const ReportOptions& options, 
   report.add_number("step", scene.dt);
   report.add_text("integrator", scene.implicit ? "implicit" : "leapfrog");
   if (options.check) try {
-      for (const auto& body : scene.bodies) tool::read_solid(body.mesh);
+      std::vector<geo::TriangleMesh> meshes;
+      for (const auto& body : scene.bodies) {
+        meshes.push_back(tool::read_solid(body.mesh).mesh);
+        tool::require_whole(meshes.back(), body.mesh, "a scene begins with whole models");
+      }
+      geo::place_models(scene, std::move(meshes));
     } catch (const geo::MissingInputError&) {
       throw;
     } catch (const geo::InputError& e) {

@@ -59,7 +59,7 @@ std::string file_of(const std::string& path) {
 
 }  // namespace
 
-Subject read_subject(const std::string& given, bool repair) {
+Subject read_subject(const std::string& given, bool repair, const tool::Say& say) {
   const std::string path = file_of(given);
   const std::string bytes = geo::read_all(path);
   Subject subject;
@@ -73,7 +73,7 @@ Subject read_subject(const std::string& given, bool repair) {
     subject.moved.swap(file.mesh.vertices);
   }
   if (repair && !file.mesh.two_sided())
-    tool::repair_plain(file.mesh, path);
+    tool::repair_plain(file.mesh, path, say);
   else
     tool::require_solid(file.mesh, path, bytes);
   subject.complex = tool::complex_of(file, path);

@@ -6,6 +6,7 @@
 
 #include <kerf/complex.h>
 #include <kerf/mesh.h>
+#include "model.h"
 
 namespace pieces {
 
@@ -18,7 +19,8 @@ struct Subject {
 
 /// Reads any of them; of a run's folder the last frame. A frame with open cracks gets the
 /// undeformed positions of its run's checkpoint.kerf, in the folder above, where its topology is
-/// decided. With `repair`, a plain surface is repaired first. Throws InputError.
-Subject read_subject(const std::string& path, bool repair);
+/// decided. With `repair`, a plain surface is repaired first; `say` takes what was
+/// decided about shells. Throws InputError.
+Subject read_subject(const std::string& path, bool repair, const tool::Say& say);
 
 }  // namespace pieces

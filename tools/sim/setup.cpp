@@ -56,13 +56,10 @@ Setup read_setup(const std::string& path, const geo::SceneOverrides& overrides) 
     hashes += " " + std::to_string(geo::fingerprint(bytes));
   }
   setup.fingerprint = geo::fingerprint(hashes);
-  setup.models = geo::place_models(setup.scene, std::move(meshes));
-  if (setup.models.bodies.size() > 1) {
-    try {
-      geo::require_solid(setup.models.all);
-    } catch (const geo::InputError& e) {
-      throw geo::InputError(path + ": the placed bodies, taken together: " + e.what());
-    }
+  try {
+    setup.models = geo::place_models(setup.scene, std::move(meshes));
+  } catch (const geo::InputError& e) {
+    throw geo::InputError(path + ": " + e.what());
   }
   return setup;
 }
@@ -74,6 +71,10 @@ void warn_of_large_models(const Setup& setup, const tool::Tool& t) {
   if (across >= 100 && unscaled)
     t.say("kerf-sim: the bodies are " + tool::rounded(across) +
           " m across, as units are metres; give them scale = 0.001 if they are in mm");
+}
+
+void tell_touching_bodies(const Setup& setup, const std::string& name, const tool::Tool& t) {
+  if (const std::string note = geo::touching_note(setup.scene, setup.models); !note.empty()) t.say(name + ": " + note);
 }
 
 void warn_of_coarse_models(const Setup& setup, const geo::Body& body, const tool::Tool& t) {

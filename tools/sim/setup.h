@@ -21,9 +21,11 @@ struct Setup {
 /// not to the scene. Throws tool::UsageError.
 geo::SceneOverrides parse_overrides(const std::vector<std::string>& settings);
 
-/// Reads a scene and its models. Throws geo::InputError, also where placed bodies intersect.
+/// Reads a scene and its models. Throws geo::InputError, also where placed bodies overlap.
 Setup read_setup(const std::string& path, const geo::SceneOverrides& overrides);
 
+/// Says which bodies touched and were moved apart; the line begins with the tool's name.
+void tell_touching_bodies(const Setup& setup, const std::string& name, const tool::Tool& t);
 /// Warns of models that are probably in millimetres.
 void warn_of_large_models(const Setup& setup, const tool::Tool& t);
 /// Warns of models with triangles much larger than the node spacing, as CAD programs write them: a

@@ -139,11 +139,10 @@ struct SolidRepairStats {
   std::optional<SelfUnionStats> united;  ///< where triangles crossed, or edges had more than two
 };
 
-/// A valid model of a plain mesh (no sites): repair() with these arguments, then, where the result
+/// A valid model of a plain mesh (no sites): repair() with these options, then, where the result
 /// is no solid, self_union(). Throws InputError where triangles bound nothing, else as
 /// self_union().
-TriangleMesh repaired_solid(TriangleMesh mesh, double weld_distance = 0, bool smooth_fill = false,
-                            SolidRepairStats* stats = nullptr);
+TriangleMesh repaired_solid(TriangleMesh mesh, const RepairOptions& options = {}, SolidRepairStats* stats = nullptr);
 
 // ---- Local edits of a crack complex (§ 5.2, § 8's first limitation). Each is guarded: K never
 // intersects itself and S_A stays closed. Vertices stay on all that they lie on: the skin as given,

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "kerf/body.h"
@@ -116,10 +118,19 @@ struct RunState {
 struct PlacedModels {
   TriangleMesh all;                  ///< all bodies, in their order; attributes only where there is one body
   std::vector<TriangleMesh> bodies;  ///< one for each body of the scene
+  /// Pairs of bodies that touched, ascending, and the gap that was made between their surfaces, m.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> touching{};
+  double gap = 0;
 };
 
-/// Places one mesh for each of scene.bodies. Throws InputError where their numbers differ.
+/// Places one mesh for each of scene.bodies; each is a valid model (require_solid()). Bodies that
+/// touch, or overlap by rounding alone, are moved apart where they do, by a ten-thousandth of the
+/// mean edge. Throws InputError where the numbers of meshes and bodies differ. Also where two
+/// bodies overlap, or lie in each other: the message names both and says how deep.
 PlacedModels place_models(const Scene& scene, std::vector<TriangleMesh> meshes);
+
+/// A line for the user that names the bodies that touched; empty where none did.
+std::string touching_note(const Scene& scene, const PlacedModels& models);
 
 /// The scene's obstacles at a time in seconds, as one mesh, for pictures. A plane is shown as a
 /// square near the bodies' initial places, 1.5 times as wide. Empty where the scene has none.

@@ -44,6 +44,15 @@ std::shared_ptr<Mesh> wrapped(const std::shared_ptr<Mesh>& mesh, double voxel) {
   return without_gil([&] { return std::make_shared<Mesh>(geo::wrapped(mesh->mesh, voxel)); });
 }
 
+std::shared_ptr<Mesh> wrapped_solid(const std::shared_ptr<Mesh>& mesh, double voxel, double weld, bool smooth,
+                                    int inner, int open) {
+  require_voxel(mesh->mesh, voxel);
+  const geo::RepairOptions options{weld, smooth, static_cast<geo::InnerShells>(inner)};
+  return without_gil([&] {
+    return std::make_shared<Mesh>(geo::wrapped_solid(mesh->mesh, voxel, options, static_cast<geo::OpenParts>(open)));
+  });
+}
+
 void write_level_set(const Path& path, const std::shared_ptr<Mesh>& mesh, double voxel, bool fog) {
   require_voxel(mesh->mesh, voxel);
   without_gil([&] { geo::write_level_set(path.text, mesh->mesh, voxel, fog); });
@@ -54,6 +63,8 @@ void write_level_set(const Path& path, const std::shared_ptr<Mesh>& mesh, double
 void bind_volumes(py::module_& module) {
   module.def("read_volume", &read_volume, py::arg("path"), py::arg("grid"), py::arg("iso"), py::arg("adaptivity"));
   module.def("wrapped", &wrapped, py::arg("mesh"), py::arg("voxel"));
+  module.def("wrapped_solid", &wrapped_solid, py::arg("mesh"), py::arg("voxel"), py::arg("weld"), py::arg("smooth"),
+             py::arg("inner"), py::arg("open"));
   module.def("write_level_set", &write_level_set, py::arg("path"), py::arg("mesh"), py::arg("voxel"), py::arg("fog"));
 }
 

@@ -21,16 +21,9 @@ Eigen::Isometry3d isometry(const Pose& p) {
   return at;
 }
 
-// Nodes whose surface may be within reach of a shape; the surface is within a support radius of its
-// nodes. Weights of the surface are needed for these only.
-std::vector<std::uint8_t> near_nodes(const RigidShape& shape, const Eigen::Isometry3d& to_local, const NodeSet& nodes,
-                                     const std::vector<Vec3>& u, double reach) {
-  std::vector<std::uint8_t> near(nodes.size());
-  parallel_for(nodes.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      near[i] = shape.near(to_local * (nodes.position[i] + u[i]), reach + nodes.radius[i]);
-  });
-  return near;
+// Whether bodies of the scene repel each other by a penalty: self-contact includes that.
+bool act_between_bodies(const Scene& scene) {
+  return scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
 }
 
 // Whether boxes that contain each body during the step meet: twice the nodes' motion at their
@@ -93,22 +86,16 @@ Obstacles::Obstacles(const Scene& scene) {
     shapes_.push_back(
         std::make_shared<RigidShape>(mesh.triangles.empty() ? RigidShape::half_space(o.normal) : RigidShape(mesh)));
   }
-  if (scene.ground && scene.self_contact)
-    shapes_.push_back(std::make_shared<RigidShape>(RigidShape::half_space(scene.ground_normal)));
+  if (scene.ground) shapes_.push_back(std::make_shared<RigidShape>(RigidShape::half_space(scene.ground_normal)));
 }
 
-const SurfaceWeights& Obstacles::weights_of(const ObjectContactStep& step) {
-  if (step.weights) return *step.weights;
-  if (!own_weights_) own_weights_.emplace().rebuild(step.body, step.solid);
-  return *own_weights_;
-}
+bool Obstacles::act(const Scene& scene) const { return !shapes_.empty() || act_between_bodies(scene); }
 
 void Obstacles::add_potentials(const ObjectContactStep& step, Environment& environment) {
   const Scene& scene = step.scene;
   const double dt = step.dt;
   obstacles_.clear();
-  const bool between_bodies = scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
-  if (shapes_.empty() && !between_bodies) return;
+  if (!act(scene)) return;
   const ContactScale scale = scale_of(step, environment.gravity);
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
@@ -125,19 +112,16 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
     // Twice the way of nodes at their present speed, since forces of the step may accelerate them.
     const double reach = 2 * dt * (scale.fastest + scale.fall) + moved + scale.spacing;
     obstacles_.emplace_back(shapes_[k], options, from, to);
-    if (const auto near = near_nodes(*shapes_[k], from.inverse(), step.body.nodes, step.motion.displacement, reach);
-        std::find(near.begin(), near.end(), 1) != near.end())
-      obstacles_.back().find_contacts(
-          step.body, weights_of(step), {step.motion.displacement, step.surface, near}, reach,
-          relative_slip * std::max(dt * scale.fall, moved) + least_slip * scale.spacing, scale.pressure_factor);
+    obstacles_.back().find_contacts(step.weights, step.surface, reach,
+                                    relative_slip * std::max(dt * scale.fall, moved) + least_slip * scale.spacing,
+                                    scale.pressure_factor);
   }
-  if (scene.ground && scene.self_contact) environment.ground = false;
   for (ObstaclePenalty& o : obstacles_)
     if (!o.empty()) environment.contact.push_back(&o);
-  if (!between_bodies || !bodies_may_meet(step, scale.fall)) return;
+  if (!act_between_bodies(scene) || !bodies_may_meet(step, scale.fall)) return;
   const double reach = 4 * dt * (scale.fastest + scale.fall) + scale.spacing;  // both bodies move
   body_contact_ =
-      find_body_contacts({step.body, step.solid, weights_of(step), step.body_index, step.motion.displacement},
+      find_body_contacts({step.body, step.solid, step.weights, step.body_index, step.motion.displacement},
                          {scene.contact_stiffness * scale.areal_density, scene.contact.friction, reach,
                           relative_slip * dt * scale.fall + least_slip * scale.spacing, scale.pressure_factor});
   if (!body_contact_->empty()) environment.contact.push_back(&*body_contact_);

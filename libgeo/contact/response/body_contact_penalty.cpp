@@ -3,6 +3,7 @@
 #include "contact/response/body_contact_penalty.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace geo {
 
@@ -29,6 +30,12 @@ Potential::Derivatives BodyContactPenalty::derivatives(std::size_t k, const Vec3
   if (const LaggedFriction f = friction(c); f.acts())
     f.add(c.tangential(d - c.start), projector, c.slip, result.force, result.hessian);
   return result;
+}
+
+double BodyContactPenalty::update_friction(std::size_t k, const Vec3& d) {
+  Contact& c = contacts_[k];
+  const double before = std::exchange(c.friction_bound, friction_ * (c.stiffness * c.depth(d)));
+  return (c.friction_bound - before) * friction(c).energy_over_bound(c.tangential(d - c.start).norm());
 }
 
 void BodyContactPenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,

@@ -39,6 +39,8 @@ class BodyContactPenalty : public Potential {
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
+  /// Takes the bound of friction at relative displacement d.
+  double update_friction(std::size_t k, const Vec3& d) override;
   /// The stiffness of the penalty.
   double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
   /// The penalty's impulse of an explicit substep; friction stops the slip velocity as far as it
@@ -54,7 +56,7 @@ class BodyContactPenalty : public Potential {
     std::vector<NodeWeight> stencil;
     Vec3 offset, normal;
     double stiffness;
-    double friction_bound = 0;  // N, of the current substep
+    double friction_bound = 0;  // N, of the last iterate
     Vec3 start = Vec3::Zero();  // relative displacement at its beginning
     Vec3 slip = Vec3::Zero();   // at the last derivatives()
     /// Depth at relative displacement d; 0 outside.

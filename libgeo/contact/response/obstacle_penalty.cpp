@@ -3,6 +3,7 @@
 #include "contact/response/obstacle_penalty.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "kerf/parallel.h"
 #include "mechanics/terms/weighted_sums.h"
@@ -30,27 +31,14 @@ Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   return p;
 }
 
-void ObstaclePenalty::find_contacts(const Body& body, const SurfaceWeights& weights, const BodyPlacement& placement,
-                                    double reach, double slip_regularisation, std::span<const double> pressure_factor) {
-  const Complex& k = body.surface;
+void ObstaclePenalty::find_contacts(const SurfaceWeights& weights, std::span<const Vec3> surface, double reach,
+                                    double slip_regularisation, std::span<const double> pressure_factor) {
   slip_regularisation_ = slip_regularisation, sum_ = {}, substep_begin_ = substep_end_ = 0;
-  const auto rest = [&](std::uint32_t v) -> const Vec3& { return k.point(k.site(SurfaceVertexId(v))); };
-  std::vector<std::uint8_t> reaches(k.surface_vertex_count(), 0);
-  std::vector<Vec3> own(placement.surface.empty() ? reaches.size() : 0);  // positions found here
-  const auto position = [&](std::uint32_t v) -> const Vec3& { return own.empty() ? placement.surface[v] : own[v]; };
   const Eigen::Isometry3d to_local = from_.inverse();
+  std::vector<std::uint8_t> reaches(weights.size(), 0);
   parallel_for(reaches.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      const Stencil carriers = weights.stencil(v);
-      if (!k.alive(SurfaceVertexId(v)) || carriers.empty()) continue;
-      if (!own.empty()) {
-        if (std::none_of(carriers.begin(), carriers.end(),
-                         [&](const NodeWeight& w) { return placement.near_nodes[w.node] != 0; }))
-          continue;
-        own[v] = rest(v) + weights.interpolate(v, placement.displacement);
-      }
-      reaches[v] = shape_->near(to_local * position(v), reach);
-    }
+    for (std::size_t v = begin; v < end; ++v)
+      reaches[v] = weights.alive(v) && !weights.stencil(v).empty() && shape_->near(to_local * surface[v], reach);
   });
   std::vector<std::uint32_t> vertices;
   for (std::uint32_t v = 0; v < reaches.size(); ++v)
@@ -62,7 +50,7 @@ void ObstaclePenalty::find_contacts(const Body& body, const SurfaceWeights& weig
       Contact& c = contacts_[i];
       c = {};
       c.weights = weights.stencil(v), c.weight_norm = weights.norm(v);
-      c.rest = rest(v), c.displacement = position(v) - c.rest;
+      c.rest = weights.rest(v) + weights.rotated(v), c.displacement = surface[v] - c.rest;
       const double factor = pressure_factor.empty() ? 1 : pressure_factor[weights.heaviest()[v]];
       c.stiffness = options_.pressure * factor * weights.area(v);
     }
@@ -125,6 +113,13 @@ Potential::Derivatives ObstaclePenalty::derivatives(const Contact& c, const Vec3
   if (const LaggedFriction f = friction(c); f.acts())
     f.add(slip(c, y), c.normal * c.normal.transpose(), last_slip, result.force, result.hessian);
   return result;
+}
+
+double ObstaclePenalty::update_friction(std::size_t k, const Vec3& d) {
+  Contact& c = contacts_[k];
+  const Vec3 y = c.rest + d;
+  const double before = std::exchange(c.normal_force, c.stiffness * std::max(0.0, -penetration(c, y).distance));
+  return options_.friction * (c.normal_force - before) * friction(c).energy_over_bound(slip(c, y).norm());
 }
 
 void ObstaclePenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,

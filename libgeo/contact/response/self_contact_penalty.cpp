@@ -14,7 +14,7 @@ void SelfContactPenalty::add(std::span<const Addition> contacts) {
   std::size_t entries = entries_.size();
   for (const Addition& c : contacts) {
     const std::size_t first = std::exchange(entries, entries + c.stencil->entries.size());
-    contacts_.push_back({first, entries, c.normal, c.depth, c.stiffness, 0, c.start, false});
+    contacts_.push_back({first, entries, c.normal, c.depth, c.stiffness, 0, c.start, false, c.stiffness * std::max(0.0, c.depth)});
   }
   entries_.resize(entries);
   parallel_for(contacts.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -48,6 +48,15 @@ Potential::Derivatives SelfContactPenalty::derivatives(std::size_t k, const Vec3
   if (const LaggedFriction f = friction(c); f.acts())
     f.add(moved - along * n, n * n.transpose(), c.slip, result.force, result.hessian);
   return result;
+}
+
+double SelfContactPenalty::update_friction(std::size_t k, const Vec3& d) {
+  Contact& c = contacts_[k];
+  const Vec3 moved = d - c.start;
+  const double along = c.normal.dot(moved);
+  const double before = std::exchange(c.normal_force, c.stiffness * std::max(0.0, c.depth - along));
+  return options_.friction * (c.normal_force - before) *
+         friction(c).energy_over_bound((moved - along * c.normal).norm());
 }
 
 std::size_t SelfContactPenalty::pressing() const {

@@ -2,6 +2,7 @@
 // with Coulomb friction (§ 3.3).
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "contact/response/relative_stencil.h"
@@ -58,7 +59,7 @@ class SelfContactPenalty : public Potential {
   /// Activation distances hold in substeps that begin where the contacts were added.
   void begin_substep(const std::vector<Vec3>&, double from, double) override {
     at_start_ = from <= 0;
-    for (Contact& c : contacts_) c.slip.setZero();
+    for (Contact& c : contacts_) c.slip.setZero(), c.normal_force = c.stiffness * std::max(0.0, c.depth);
   }
   /// Distance of a contact over the norm of its weights.
   double activation_distance(std::size_t k) const override { return at_start_ ? contacts_[k].activation_distance : 0; }
@@ -66,6 +67,8 @@ class SelfContactPenalty : public Potential {
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) override;
+  /// Takes the bound of friction at relative displacement d.
+  double update_friction(std::size_t k, const Vec3& d) override;
 
  private:
   struct Contact {
@@ -76,10 +79,11 @@ class SelfContactPenalty : public Potential {
     double activation_distance;  // of nodes since the step's beginning, model units
     Vec3 start;                  // relative displacement at the step's beginning
     bool pressing;               // at the last derivatives()
-    Vec3 slip = Vec3::Zero();    // the same
+    double normal_force;         // N, of the last update_friction()
+    Vec3 slip = Vec3::Zero();    // at the last derivatives()
   };
   LaggedFriction friction(const Contact& c) const {
-    return {options_.friction * c.stiffness * c.depth, options_.slip_regularisation};
+    return {options_.friction * c.normal_force, options_.slip_regularisation};
   }
 
   SelfContactPenaltyOptions options_;

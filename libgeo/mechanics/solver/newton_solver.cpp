@@ -41,6 +41,7 @@ bool NewtonSolver::solve(StepReport& report) {
       report.energy = std::accumulate(at_.response.energy.begin(), at_.response.energy.end(), 0.0);
       return true;
     }
+    potential_.update_friction(active_, at_.value);
     potential_.force(active_, at_.u, at_.response, at_.force);
   }
   return false;
@@ -50,7 +51,6 @@ bool NewtonSolver::solve(StepReport& report) {
 // decrease along it.
 bool NewtonSolver::iterate(bool first, StepReport& report) {
   linearise_stale();
-  potential_.update_nodal_blocks(active_, at_.u);
   preconditioner_.update(potential_, at_.u);
   update_accuracy();
   report.cg +=

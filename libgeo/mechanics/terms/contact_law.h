@@ -5,12 +5,17 @@
 //   E = ½ k d²,  −∇E = k d n with n = −∇d,  ∇²E = k ∇²(½ d²), which is k n nᵀ behind a plane.
 //
 // Friction on the slip s, the relative displacement across n since the step began, with the bound
-// b = μ N of the normal force N of that moment (Li et al. 2020, Incremental Potential Contact, § 5,
-// with the Huber function for the smooth transition) and the slip regularisation ε, model units:
+// b = μ N of a normal force N that is constant while energies are compared (Li et al. 2020,
+// Incremental Potential Contact, § 5, with the Huber function for the smooth transition) and the
+// slip regularisation ε, model units:
 //   E = b |s|² / (2 ε) where |s| < ε, else b (|s| − ½ ε),
 //   −∇E = −c s,  ∇²E ≼ c (I − n nᵀ),  c = b / max(|s|, ε), the secant stiffness.
 // The secant Hessian is that of E where |s| < ε. Elsewhere it bounds that of E from above, which is
 // less by c ŝ ŝᵀ, with ŝ = s / |s|.
+//
+// N is that of the step's beginning in Newton's first iterate, and that of the iterate in all
+// others. So what lands, or is met by other points than before, has the friction of this step's
+// force (docs/decisions/088).
 #pragma once
 
 #include <algorithm>
@@ -38,17 +43,18 @@ inline Mat3 plane_penalty_hessian(double stiffness, const Vec3& normal) {
   return stiffness * normal * normal.transpose();
 }
 
-/// Coulomb friction of one contact over a step. The normal force is that of the step's beginning.
+/// Coulomb friction of one contact over a step.
 struct LaggedFriction {
   double bound = 0;                ///< μ N, N
   double slip_regularisation = 0;  ///< ε, model units; positive where the bound is
 
-  /// False where the contact did not press when the step began.
+  /// False where the contact does not press.
   bool acts() const { return bound > 0; }
   /// Energy, J. `slip`: |s|, model units.
-  double energy(double slip) const {
-    return bound *
-           (slip < slip_regularisation ? 0.5 * slip * slip / slip_regularisation : slip - 0.5 * slip_regularisation);
+  double energy(double slip) const { return bound * energy_over_bound(slip); }
+  /// Energy over the bound, model units.
+  double energy_over_bound(double slip) const {
+    return slip < slip_regularisation ? 0.5 * slip * slip / slip_regularisation : slip - 0.5 * slip_regularisation;
   }
   /// c, N/m: the force over the slip.
   double secant_stiffness(double slip) const { return bound / std::max(slip, slip_regularisation); }

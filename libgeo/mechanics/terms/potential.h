@@ -71,6 +71,10 @@ class Potential {
   /// different k.
   virtual Derivatives derivatives(std::size_t k, const Vec3& d) = 0;
 
+  /// Takes the bound of the k-th term's friction from its normal force at relative displacement d.
+  /// Returns the change of energy(k, d) by that, J. Several threads may call this, for different k.
+  virtual double update_friction(std::size_t /*k*/, const Vec3& /*d*/) { return 0; }
+
   /// An upper bound of the k-th Hessian's eigenvalues, N/m. 0: explicit steps ignore the term.
   virtual double stiffness_bound(std::size_t /*k*/) const { return 0; }
   /// An upper bound of the largest eigenvalue of M⁻¹ ∂²E/∂u², 1/s², from stiffness_bound(): the

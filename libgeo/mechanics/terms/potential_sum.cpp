@@ -92,6 +92,17 @@ void PotentialSum::update_derivatives(std::span<const std::uint32_t> island, con
   update_matrices();
 }
 
+void PotentialSum::update_friction(std::span<const std::uint32_t> island, const std::vector<char>& selected,
+                                   std::vector<double>& sum) {
+  const auto terms = terms_to_evaluate(island, selected);
+  std::vector<double> change(terms.size());
+  parallel_for(terms.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      change[k] = terms_[terms[k]].potential->update_friction(terms_[terms[k]].index, displacement_[terms[k]]);
+  });
+  for (std::size_t k = 0; k < terms.size(); ++k) sum[island[terms_[terms[k]].first_node]] += change[k];
+}
+
 // Newly active terms join the second matrix. When that is no longer small, the first one is rebuilt
 // from all.
 void PotentialSum::update_matrices() {

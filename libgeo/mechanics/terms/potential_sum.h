@@ -33,6 +33,10 @@ class PotentialSum {
   /// Evaluates the derivatives of selected islands, at the displacements of the last add_energy()
   /// that selected them.
   void update_derivatives(std::span<const std::uint32_t> island, const std::vector<char>& selected);
+  /// Takes the friction bounds of selected islands at the displacements of the last add_energy()
+  /// that selected them, and adds the change of each island's energy to energy[island], J.
+  void update_friction(std::span<const std::uint32_t> island, const std::vector<char>& selected,
+                       std::vector<double>& energy);
   /// True if a term of the node has been active since the step began.
   bool acts_on(std::size_t node) const {
     return !matrices_[0].stencils_of(node).empty() || !matrices_[1].stencils_of(node).empty();

@@ -1,5 +1,6 @@
 // Pressure of a penalty = stiffness · areal density · depth, areal density = mean of nodal mass /
-// spacing². Contacts are sought within twice the motion expected in the step, plus a spacing.
+// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth. Contacts are sought within twice the
+// motion expected in the step, plus a spacing.
 #include "simulation/obstacles.h"
 
 #include <algorithm>
@@ -14,6 +15,11 @@ namespace {
 constexpr double relative_slip = 1e-2;
 // The least slip regularisation, in node spacings: for steps in which nothing is expected to move.
 constexpr double least_slip = 1e-6;
+// A body of height H that stands on its base is H / 1000 deep: pressure over depth is 1000 ρ |g|.
+constexpr double standing_heights = 1000;
+// Pressure over depth, in E / h: as self-contact (contact/response/penalty_assembly.cpp), so that
+// what presses is half as deep as the material between two nodes is compressed.
+constexpr double relative_stiffness = 2;
 
 Eigen::Isometry3d isometry(const Pose& p) {
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
@@ -43,38 +49,60 @@ bool bodies_may_meet(const ObjectContactStep& step, double fall) {
   return false;
 }
 
-// Scales of penalties and search distances in a step.
-struct ContactScale {
-  double areal_density = 1;             // kg / model unit², of the only material; 1 where there are several
-  std::vector<double> pressure_factor;  // per node: its material's areal density; empty where there is one
-  double spacing = 0;                   // mean, of nodes
-  double fastest = 0;                   // of nodes, model units / s
-  double fall = 0;                      // velocity that gravity adds in the step
+// A pressure over a depth that stands for all materials, Pa/m, and a factor of it for each node.
+struct PenaltyPressure {
+  double pressure = 1;
+  std::vector<double> factor;  // per node; empty where there is one material
 };
 
-// Scenes give stiffness k as acceleration over depth, 1/s². The pressure that accelerates a layer
-// of nodes by k d is k ρ_A d, with the areal density ρ_A the mean of mass / spacing². All current
-// nodes count, so that a restored run computes the same.
+// Scales of penalties and search distances in a step.
+struct ContactScale {
+  std::vector<double> areal_density;  // per material: mean of nodal mass / spacing², kg / model unit²
+  std::vector<double> stiff;          // per material: pressure over depth where the scene gives no stiffness, Pa/m
+  double spacing = 0;                 // mean, of nodes
+  double fastest = 0;                 // of nodes, model units / s
+  double fall = 0;                    // velocity that gravity adds in the step
+};
+
+// All current nodes count, so that a restored run computes the same.
 ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
   const Materials& materials = step.solid.materials();
   const NodeSet& nodes = step.body.nodes;
   const std::size_t n = step.solid.size();
-  std::vector<double> density(materials.count(), 0), count(density);
   ContactScale scale;
+  scale.areal_density.assign(materials.count(), 0), scale.stiff = scale.areal_density;
+  std::vector<double> count(materials.count(), 0), spacing = count;
   for (std::size_t i = 0; i < n; ++i) {
     const auto m = materials.index(i);
-    density[m] += step.solid.mass(NodeId(i)) / (nodes.spacing[i] * nodes.spacing[i]), ++count[m];
-    scale.spacing += nodes.spacing[i];
+    scale.areal_density[m] += step.solid.mass(NodeId(i)) / (nodes.spacing[i] * nodes.spacing[i]);
+    spacing[m] += nodes.spacing[i], ++count[m];
   }
-  for (std::size_t m = 0; m < density.size(); ++m) density[m] /= count[m];
-  scale.spacing /= double(n);
-  if (density.size() == 1)
-    scale.areal_density = density[0];
-  else
-    for (std::size_t i = 0; i < n; ++i) scale.pressure_factor.push_back(density[materials.index(i)]);
+  for (std::size_t m = 0; m < count.size(); ++m) {
+    if (!(count[m] > 0)) continue;
+    scale.spacing += spacing[m] / double(n);
+    scale.areal_density[m] /= count[m], spacing[m] /= count[m];
+    scale.stiff[m] = standing_heights * materials[m].density * gravity.norm() +
+                     relative_stiffness * materials[m].young / spacing[m];
+  }
   for (const Vec3& v : step.motion.velocity) scale.fastest = std::max(scale.fastest, v.norm());
   scale.fall = step.dt * gravity.norm();
   return scale;
+}
+
+// Scenes give stiffness k as acceleration over depth, 1/s². The pressure that accelerates a layer
+// of nodes by k d is k ρ_A d, with ρ_A the areal density.
+PenaltyPressure pressure_of(double stiffness, const ContactScale& scale, const ObjectContactStep& step) {
+  std::vector<double> of = scale.stiff;
+  if (stiffness > 0)
+    for (std::size_t m = 0; m < of.size(); ++m) of[m] = stiffness * scale.areal_density[m];
+  PenaltyPressure result;
+  if (of.size() == 1) {
+    result.pressure = of[0];
+    return result;
+  }
+  for (std::size_t i = 0; i < step.solid.size(); ++i)
+    result.factor.push_back(of[step.solid.materials().index(i)]);
+  return result;
 }
 
 }  // namespace
@@ -99,9 +127,9 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
   const ContactScale scale = scale_of(step, environment.gravity);
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
-    ObstaclePenaltyOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness,
-                                   ground ? scene.friction : scene.obstacles[k].friction};
-    options.pressure *= scale.areal_density;
+    const PenaltyPressure penalty =
+        pressure_of(ground ? scene.ground_stiffness : scene.obstacles[k].stiffness, scale, step);
+    const ObstaclePenaltyOptions options{penalty.pressure, ground ? scene.friction : scene.obstacles[k].friction};
     Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
     if (ground)
       from.translation() = to.translation() = scene.ground_point;
@@ -114,16 +142,17 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
     obstacles_.emplace_back(shapes_[k], options, from, to);
     obstacles_.back().find_contacts(step.weights, step.surface, reach,
                                     relative_slip * std::max(dt * scale.fall, moved) + least_slip * scale.spacing,
-                                    scale.pressure_factor);
+                                    penalty.factor);
   }
   for (ObstaclePenalty& o : obstacles_)
     if (!o.empty()) environment.contact.push_back(&o);
   if (!act_between_bodies(scene) || !bodies_may_meet(step, scale.fall)) return;
   const double reach = 4 * dt * (scale.fastest + scale.fall) + scale.spacing;  // both bodies move
+  const PenaltyPressure penalty = pressure_of(scene.contact_stiffness, scale, step);
   body_contact_ =
       find_body_contacts({step.body, step.solid, step.weights, step.body_index, step.motion.displacement},
-                         {scene.contact_stiffness * scale.areal_density, scene.contact.friction, reach,
-                          relative_slip * dt * scale.fall + least_slip * scale.spacing, scale.pressure_factor});
+                         {penalty.pressure, scene.contact.friction, reach,
+                          relative_slip * dt * scale.fall + least_slip * scale.spacing, penalty.factor});
   if (!body_contact_->empty()) environment.contact.push_back(&*body_contact_);
 }
 

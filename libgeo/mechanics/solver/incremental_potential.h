@@ -24,6 +24,8 @@ class IncrementalPotential {
   const Islands& islands() const { return islands_; }
   /// The step itself.
   const StepProblem& problem() const { return problem_; }
+  /// The contact of the step.
+  const PotentialSum& contact() const { return contact_; }
   /// ũ per node: where inertia alone takes it.
   const std::vector<Vec3>& inertial_target() const { return target_; }
   /// Gravity and load per node, N.

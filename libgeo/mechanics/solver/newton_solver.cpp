@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "mechanics/solver/momentum_balance.h"
+
 namespace geo {
 namespace {
 
@@ -57,6 +59,7 @@ bool NewtonSolver::iterate(bool first, StepReport& report) {
       conjugate_gradients(potential_, preconditioner_, active_, at_.force, {first, moved_, accuracy_}, direction_);
   ++report.newton;
   rotation_.conserve_momentum(active_, at_.u, direction_.step);
+  balance_momentum(potential_, active_, at_.u, direction_.step);
   active_.maximum(length_, [&](std::size_t i) { return problem_.squared_in_spacings(direction_.step[i], i); });
   active_.take_square_roots(length_);
   for (std::size_t p = 0; p < length_.size(); ++p)

@@ -126,6 +126,13 @@ void PotentialSum::update_matrices() {
   matrices_[0] = StencilMatrix(terms, stencils_, start_.size()), matrices_[1] = {};
 }
 
+std::vector<PotentialSum::ActiveTerm> PotentialSum::active_terms() const {
+  std::vector<ActiveTerm> terms;
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (matrix_of_[t]) terms.push_back({stencils_[t], force_[t], hessian_[t].topRows<3>().cast<double>()});
+  return terms;
+}
+
 Vec3 PotentialSum::force_at(std::size_t node) const {
   Vec3 sum = Vec3::Zero();
   for (const auto& matrix : matrices_) {

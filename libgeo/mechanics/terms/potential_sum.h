@@ -41,6 +41,14 @@ class PotentialSum {
   bool acts_on(std::size_t node) const {
     return !matrices_[0].stencils_of(node).empty() || !matrices_[1].stencils_of(node).empty();
   }
+  /// A term that has been active since the step began, by the last update_derivatives().
+  struct ActiveTerm {
+    Stencil stencil;
+    Vec3 force;    ///< −∂E/∂d, N
+    Mat3 hessian;  ///< ∂²E/∂d², N/m
+  };
+  /// All of these, in their order.
+  std::vector<ActiveTerm> active_terms() const;
   /// The force −∂E/∂u at a node, N, by the last update_derivatives().
   Vec3 force_at(std::size_t node) const;
   /// Prepares hessian_product_at() for the product with p, by the Hessians of the last

@@ -43,7 +43,6 @@ struct Linearised {
     potential.evaluate(all, start.displacement, value, &response);
     potential.force(all, start.displacement, response, force);
     potential.linearise(all, response);
-    potential.update_nodal_blocks(all, start.displacement);
     preconditioner.update(potential, start.displacement);
   }
   Linearised(const Linearised&) = delete;

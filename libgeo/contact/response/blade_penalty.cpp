@@ -84,7 +84,7 @@ double BladePenalty::energy(std::size_t k, const Vec3& d) const {
   return penalty_energy(contacts_[k].stiffness, depth * depth);
 }
 
-Potential::Derivatives BladePenalty::derivatives(std::size_t k, const Vec3& d) {
+Potential::Derivatives BladePenalty::derivatives(std::size_t k, const Vec3& d) const {
   const Contact& c = contacts_[k];
   const double depth = c.depth(d);
   return {penalty_force(c.stiffness, depth, c.normal),

@@ -52,7 +52,7 @@ class BladePenalty : public Potential {
   /// Energy of the penalty, J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of the penalty.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override;
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override;
   /// Force of the material on each of `blades` blades at displacements u, N.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
 

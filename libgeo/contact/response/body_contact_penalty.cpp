@@ -3,14 +3,13 @@
 #include "contact/response/body_contact_penalty.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace geo {
 
 void BodyContactPenalty::begin_substep(const std::vector<Vec3>& u, double, double) {
   for (Contact& c : contacts_) {
-    c.start = weighted_sum(c.stencil, u), c.slip.setZero();
-    c.friction_bound = friction_ * (c.stiffness * c.depth(c.start));
+    c.start = weighted_sum(c.stencil, u);
+    c.friction.begin_substep(c.stiffness * c.depth(c.start));
   }
 }
 
@@ -21,21 +20,22 @@ double BodyContactPenalty::energy(std::size_t k, const Vec3& d) const {
   return f.acts() ? penalty + f.energy(c.tangential(d - c.start).norm()) : penalty;
 }
 
-Potential::Derivatives BodyContactPenalty::derivatives(std::size_t k, const Vec3& d) {
-  Contact& c = contacts_[k];
+Potential::Derivatives BodyContactPenalty::derivatives(std::size_t k, const Vec3& d) const {
+  const Contact& c = contacts_[k];
   const double depth = c.depth(d);
   const Mat3 projector = c.normal * c.normal.transpose();
   Derivatives result{penalty_force(c.stiffness, depth, c.normal),
                      depth > 0 ? penalty_hessian(c.stiffness, projector) : Mat3(Mat3::Zero())};
   if (const LaggedFriction f = friction(c); f.acts())
-    f.add(c.tangential(d - c.start), projector, c.slip, result.force, result.hessian);
+    f.add(c.tangential(d - c.start), projector, c.friction.last_slip, result.force, result.hessian);
   return result;
 }
 
-double BodyContactPenalty::update_friction(std::size_t k, const Vec3& d) {
+double BodyContactPenalty::begin_iterate(std::size_t k, const Vec3& d) {
   Contact& c = contacts_[k];
-  const double before = std::exchange(c.friction_bound, friction_ * (c.stiffness * c.depth(d)));
-  return (c.friction_bound - before) * friction(c).energy_over_bound(c.tangential(d - c.start).norm());
+  const Vec3 slip = c.tangential(d - c.start);
+  const double change = c.friction.begin_iterate(slip, c.stiffness * c.depth(d));
+  return friction_ * change * friction(c).energy_over_bound(slip.norm());
 }
 
 void BodyContactPenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,

@@ -38,9 +38,9 @@ class BodyContactPenalty : public Potential {
   /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of penalty and friction.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override;
-  /// Takes the bound of friction at relative displacement d.
-  double update_friction(std::size_t k, const Vec3& d) override;
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override;
+  /// Takes the bound of friction.
+  double begin_iterate(std::size_t k, const Vec3& d) override;
   /// The stiffness of the penalty.
   double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
   /// The penalty's impulse of an explicit substep; friction stops the slip velocity as far as it
@@ -56,15 +56,14 @@ class BodyContactPenalty : public Potential {
     std::vector<NodeWeight> stencil;
     Vec3 offset, normal;
     double stiffness;
-    double friction_bound = 0;  // N, of the last iterate
-    Vec3 start = Vec3::Zero();  // relative displacement at its beginning
-    Vec3 slip = Vec3::Zero();   // at the last derivatives()
+    Vec3 start = Vec3::Zero();  // relative displacement when the substep began
+    FrictionMemory friction = {};
     /// Depth at relative displacement d; 0 outside.
     double depth(const Vec3& d) const { return std::max(0.0, -normal.dot(offset + d)); }
     /// Part of v across the normal.
     Vec3 tangential(const Vec3& v) const { return v - normal.dot(v) * normal; }
   };
-  LaggedFriction friction(const Contact& c) const { return {c.friction_bound, slip_regularisation_}; }
+  LaggedFriction friction(const Contact& c) const { return {friction_ * c.friction.normal_force, slip_regularisation_}; }
 
   double friction_, slip_regularisation_;
   std::vector<Contact> contacts_;

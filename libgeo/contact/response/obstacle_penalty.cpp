@@ -3,7 +3,6 @@
 #include "contact/response/obstacle_penalty.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "kerf/parallel.h"
 #include "mechanics/terms/weighted_sums.h"
@@ -70,9 +69,9 @@ void ObstaclePenalty::begin_substep(const std::vector<Vec3>& u, double from, dou
     const Vec3 local = to_local * c.start;
     const RigidShape::Field field = shape_->at(local);
     c.distance = field.distance;
-    c.normal_force = c.stiffness * std::max(0.0, -field.distance);
+    c.friction.begin_substep(c.stiffness * std::max(0.0, -field.distance));
     c.normal = start.linear() * field.normal;
-    c.stuck = now_ * local, c.slip.setZero();
+    c.stuck = now_ * local;
     c.activation_distance = std::max(0.0, c.distance - (c.start - c.stuck).norm()) / c.weight_norm;
   };
   if (from > 0) return for_each_displacement(u, begin_contact);
@@ -105,21 +104,22 @@ double ObstaclePenalty::energy(std::size_t k, const Vec3& d) const {
   return f.acts() ? penalty + f.energy(slip(c, y).norm()) : penalty;
 }
 
-Potential::Derivatives ObstaclePenalty::derivatives(const Contact& c, const Vec3& d, Vec3& last_slip) const {
+Potential::Derivatives ObstaclePenalty::derivatives(std::size_t k, const Vec3& d) const {
+  const Contact& c = contacts_[k];
   const Vec3 y = c.rest + d;
   const RigidShape::Field field = penetration(c, y);
   Derivatives result{penalty_force(c.stiffness, -field.distance, field.normal),
                      penalty_hessian(c.stiffness, field.half_square_hessian)};
   if (const LaggedFriction f = friction(c); f.acts())
-    f.add(slip(c, y), c.normal * c.normal.transpose(), last_slip, result.force, result.hessian);
+    f.add(slip(c, y), c.normal * c.normal.transpose(), c.friction.last_slip, result.force, result.hessian);
   return result;
 }
 
-double ObstaclePenalty::update_friction(std::size_t k, const Vec3& d) {
+double ObstaclePenalty::begin_iterate(std::size_t k, const Vec3& d) {
   Contact& c = contacts_[k];
-  const Vec3 y = c.rest + d;
-  const double before = std::exchange(c.normal_force, c.stiffness * std::max(0.0, -penetration(c, y).distance));
-  return options_.friction * (c.normal_force - before) * friction(c).energy_over_bound(slip(c, y).norm());
+  const Vec3 y = c.rest + d, along = slip(c, y);
+  const double change = c.friction.begin_iterate(along, c.stiffness * std::max(0.0, -penetration(c, y).distance));
+  return options_.friction * change * friction(c).energy_over_bound(along.norm());
 }
 
 void ObstaclePenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
@@ -154,8 +154,7 @@ void ObstaclePenalty::add_reaction(const std::vector<Vec3>& u, Reaction& sum) co
   const double share = substep_end_ - substep_begin_;
   std::vector<Reaction> on_body(contacts_.size());
   for_each_displacement(u, [&](std::size_t k, const Vec3& d) {
-    Vec3 unused_slip = Vec3::Zero();
-    const Vec3 f = share * derivatives(contacts_[k], d, unused_slip).force;
+    const Vec3 f = share * derivatives(k, d).force;
     on_body[k] = {f, (contacts_[k].rest + d - now_.translation()).cross(f)};
   });
   for (const Reaction& r : on_body) sum.force -= r.force, sum.torque -= r.torque;

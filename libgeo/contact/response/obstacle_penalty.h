@@ -55,11 +55,9 @@ class ObstaclePenalty : public Potential {
   /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of penalty and friction.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override {
-    return derivatives(contacts_[k], d, contacts_[k].slip);
-  }
-  /// Takes the bound of friction where the vertex has displacement d.
-  double update_friction(std::size_t k, const Vec3& d) override;
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override;
+  /// Takes the bound of friction.
+  double begin_iterate(std::size_t k, const Vec3& d) override;
   /// The stiffness of the penalty.
   double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
   /// The penalty's impulse of an explicit substep; friction stops the slip velocity as far as it
@@ -89,16 +87,16 @@ class ObstaclePenalty : public Potential {
     Vec3 start = Vec3::Zero();       // position
     double distance = 0;             // to the obstacle; negative inside
     double activation_distance = 0;  // of nodes
-    double normal_force = 0;         // N; during Newton iterations that of the last iterate
     Vec3 normal = Vec3::Zero();
     Vec3 stuck = Vec3::Zero();  // where the vertex would be now had it stuck to the obstacle
-    Vec3 slip = Vec3::Zero();   // at the last derivatives()
+    FrictionMemory friction;
   };
-  Derivatives derivatives(const Contact& c, const Vec3& d, Vec3& last_slip) const;
   Eigen::Isometry3d pose(double share) const;
   RigidShape::Field penetration(const Contact& c, const Vec3& y) const;
   static Vec3 slip(const Contact& c, const Vec3& y);
-  LaggedFriction friction(const Contact& c) const { return {options_.friction * c.normal_force, slip_regularisation_}; }
+  LaggedFriction friction(const Contact& c) const {
+    return {options_.friction * c.friction.normal_force, slip_regularisation_};
+  }
   void add_reaction(const std::vector<Vec3>& u, Reaction& sum) const;
   template <class Use>
   void for_each_displacement(const std::vector<Vec3>& u, const Use& use) const;

@@ -35,10 +35,10 @@ class IncrementalPotential {
   /// where given, receives the elastic response that force() and linearise() need.
   void evaluate(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& value,
                 ElasticResponse* response = nullptr);
-  /// Takes the bounds of friction from the normal forces at the last evaluate() of the active
-  /// islands, and adds what this changes of their E to `value`.
-  void update_friction(const ActiveIslands& active, std::vector<double>& value) {
-    contact_.update_friction(islands_.of_nodes(), active.mask(), value);
+  /// Begins a Newton iterate where the active islands were at their last evaluate(). From the second
+  /// one on, takes the bounds of friction there, and adds what this changes of E to `value`.
+  void begin_iterate(const ActiveIslands& active, std::vector<double>& value) {
+    contact_.begin_iterate(islands_.of_nodes(), active.mask(), value);
   }
   /// force = −∂E/∂u, N, at the nodes of active islands. Precondition: their last evaluate() was at
   /// u, with `response`.

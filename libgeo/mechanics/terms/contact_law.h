@@ -61,15 +61,31 @@ struct LaggedFriction {
   /// Adds the force −c s and a Hessian between the true one and the secant, c (I − n nᵀ − θ ŝ ŝᵀ).
   /// θ = 1 − ½ |s − s'| / |s|, not less than 0, with s' the slip of Newton's last iterate: the true
   /// curvature where the slip has settled, the secant where it may turn back (docs/decisions/087).
-  /// `slip`: s; `normal_projector`: n nᵀ; `last_slip`: s', zero in the first iterate; becomes s.
-  void add(const Vec3& slip, const Mat3& normal_projector, Vec3& last_slip, Vec3& force, Mat3& hessian) const {
+  /// `slip`: s; `normal_projector`: n nᵀ; `last_slip`: s', zero in the first iterate.
+  void add(const Vec3& slip, const Mat3& normal_projector, const Vec3& last_slip, Vec3& force, Mat3& hessian) const {
     const double length = slip.norm(), stiffness = secant_stiffness(length);
     force -= stiffness * slip, hessian += stiffness * (Mat3::Identity() - normal_projector);
     if (length > slip_regularisation && !last_slip.isZero(0)) {
       const double settled = std::max(0.0, 1 - 0.5 * (slip - last_slip).norm() / length);
       hessian -= settled * stiffness / (length * length) * slip * slip.transpose();
     }
-    last_slip = slip;
+  }
+};
+
+/// What Newton's method remembers of the friction of one contact.
+struct FrictionMemory {
+  double normal_force = 0;                             ///< N: that the bound is of
+  Vec3 slip = Vec3::Zero(), last_slip = Vec3::Zero();  ///< of the present iterate and the one before
+  bool has_iterate = false;                            ///< of the substep
+
+  /// Begins a substep with the normal force of that moment.
+  void begin_substep(double normal) { *this = {normal, Vec3::Zero(), Vec3::Zero(), false}; }
+  /// Begins an iterate. Returns the change of the normal force that the bound is of.
+  double begin_iterate(const Vec3& new_slip, double normal) {
+    last_slip = slip, slip = new_slip;
+    const double change = has_iterate ? normal - normal_force : 0;
+    normal_force += change, has_iterate = true;
+    return change;
   }
 };
 

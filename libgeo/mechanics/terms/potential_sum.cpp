@@ -92,13 +92,13 @@ void PotentialSum::update_derivatives(std::span<const std::uint32_t> island, con
   update_matrices();
 }
 
-void PotentialSum::update_friction(std::span<const std::uint32_t> island, const std::vector<char>& selected,
-                                   std::vector<double>& sum) {
+void PotentialSum::begin_iterate(std::span<const std::uint32_t> island, const std::vector<char>& selected,
+                                 std::vector<double>& sum) {
   const auto terms = terms_to_evaluate(island, selected);
   std::vector<double> change(terms.size());
   parallel_for(terms.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
-      change[k] = terms_[terms[k]].potential->update_friction(terms_[terms[k]].index, displacement_[terms[k]]);
+      change[k] = terms_[terms[k]].potential->begin_iterate(terms_[terms[k]].index, displacement_[terms[k]]);
   });
   for (std::size_t k = 0; k < terms.size(); ++k) sum[island[terms_[terms[k]].first_node]] += change[k];
 }
@@ -126,10 +126,12 @@ void PotentialSum::update_matrices() {
   matrices_[0] = StencilMatrix(terms, stencils_, start_.size()), matrices_[1] = {};
 }
 
-std::vector<PotentialSum::ActiveTerm> PotentialSum::active_terms() const {
-  std::vector<ActiveTerm> terms;
+std::vector<PotentialSum::LinearisedTerm> PotentialSum::linearised_terms() const {
+  std::vector<LinearisedTerm> terms;
   for (std::size_t t = 0; t < terms_.size(); ++t)
-    if (matrix_of_[t]) terms.push_back({stencils_[t], force_[t], hessian_[t].topRows<3>().cast<double>()});
+    if (!idle_[t])
+      terms.push_back({terms_[t].potential, terms_[t].index, stencils_[t], force_[t],
+                       hessian_[t].topRows<3>().cast<double>()});
   return terms;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "contact/response/body_contact.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -25,28 +24,6 @@ Eigen::Isometry3d isometry(const Pose& p) {
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
   at.linear() = p.rotation.toRotationMatrix(), at.translation() = p.position;
   return at;
-}
-
-// Whether bodies of the scene repel each other by a penalty: self-contact includes that.
-bool act_between_bodies(const Scene& scene) {
-  return scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
-}
-
-// Whether boxes that contain each body during the step meet: twice the nodes' motion at their
-// present speed, plus a spacing. `fall`: velocity that gravity adds in a step, model units / s.
-bool bodies_may_meet(const ObjectContactStep& step, double fall) {
-  const NodeSet& nodes = step.body.nodes;
-  std::vector<Box3> box;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const std::uint32_t b = step.body_index[i];
-    if (b >= box.size()) box.resize(b + 1);
-    const Vec3 x = nodes.position[i] + step.motion.displacement[i], motion = 2 * step.dt * step.motion.velocity[i];
-    box[b].add(Box3{x.cwiseMin(x + motion), x.cwiseMax(x + motion)}.grown(nodes.spacing[i] + 2 * step.dt * fall));
-  }
-  for (std::size_t a = 0; a < box.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      if (box[a].meets(box[b])) return true;
-  return false;
 }
 
 // A pressure over a depth that stands for all materials, Pa/m, and a factor of it for each node.
@@ -117,13 +94,11 @@ Obstacles::Obstacles(const Scene& scene) {
   if (scene.ground) shapes_.push_back(std::make_shared<RigidShape>(RigidShape::half_space(scene.ground_normal)));
 }
 
-bool Obstacles::act(const Scene& scene) const { return !shapes_.empty() || act_between_bodies(scene); }
-
 void Obstacles::add_potentials(const ObjectContactStep& step, Environment& environment) {
   const Scene& scene = step.scene;
   const double dt = step.dt;
   obstacles_.clear();
-  if (!act(scene)) return;
+  if (shapes_.empty()) return;
   const ContactScale scale = scale_of(step, environment.gravity);
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
@@ -146,14 +121,6 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
   }
   for (ObstaclePenalty& o : obstacles_)
     if (!o.empty()) environment.contact.push_back(&o);
-  if (!act_between_bodies(scene) || !bodies_may_meet(step, scale.fall)) return;
-  const double reach = 4 * dt * (scale.fastest + scale.fall) + scale.spacing;  // both bodies move
-  const PenaltyPressure penalty = pressure_of(scene.contact_stiffness, scale, step);
-  body_contact_ =
-      find_body_contacts({step.body, step.solid, step.weights, step.body_index, step.motion.displacement},
-                         {penalty.pressure, scene.contact.friction, reach,
-                          relative_slip * dt * scale.fall + least_slip * scale.spacing, penalty.factor});
-  if (!body_contact_->empty()) environment.contact.push_back(&*body_contact_);
 }
 
 void Obstacles::add_reactions(const State& motion, double share, FrameStats& stats) const {

@@ -428,15 +428,14 @@ void Simulation::Impl::add_wedges() {
   if (!wedge.empty()) environment.contact.push_back(&wedge);
 }
 
-// Adds obstacles, contact between bodies, and self-contact. The result owns the potential of
-// self-contact.
+// Adds obstacles and self-contact. The result owns the potential of self-contact.
 std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
-  if (obstacles.act(scene)) {
+  if (obstacles.any()) {
     collisions->update_weights(body, solid);
-    obstacles.add_potentials({scene, body, solid, collisions->weights(), collisions->targets(state.motion),
-                              state.body_index, state.motion, state.time, dt},
-                             environment);
+    obstacles.add_potentials(
+        {scene, body, solid, collisions->weights(), collisions->targets(state.motion), state.motion, state.time, dt},
+        environment);
   }
   std::optional<ContactStep> contact = collisions->begin_step(body, solid, state.motion, dt, environment);
   stats.contact_seconds += watch.lap();

@@ -189,11 +189,11 @@ struct Scene {
   std::vector<Blade> blades;
   std::vector<SceneObstacle> obstacles;
   FractureOptions fracture;
-  bool self_contact = false;  ///< no two triangles of the surface cross in any frame
+  /// Bodies touch each other and themselves: no two triangles of the surface cross in any frame.
+  /// Otherwise only ground, obstacles and blades touch them.
+  bool self_contact = true;
   ContactOptions contact;
-  bool body_contact = true;        ///< penalty between bodies, where self_contact is off
-  double contact_stiffness = 0;    ///< of that penalty, as ground_stiffness
-  std::uint64_t fingerprint = 0;   ///< hash of all that decides what the run computes; 0: not from a file
+  std::uint64_t fingerprint = 0;  ///< hash of all that decides what the run computes; 0: not from a file
 
   /// Number of equal time steps in a frame: the fewest that are at most `dt` long.
   int steps_per_frame() const;

@@ -256,15 +256,18 @@ void read_checkpoints(TomlTable& t, Scene& s) {
 // Bodies had a penalty of their own once, where they did not have self-contact. Keys of it are read
 // where they mean what they meant.
 void skip_former_contact(TomlTable& t, bool self_contact) {
-  bool bodies = self_contact;
-  t.get("bodies", bodies);
-  if (bodies != self_contact)
-    t.fail(*t.find("bodies"), bodies ? "bodies touch each other by 'contact.self' = true; leave 'contact.bodies' out"
-                                     : "for bodies that do not touch, write 'contact.self' = false");
+  bool bodies = true;
   double stiffness = 0;
-  t.get("stiffness", stiffness, 0, 1e12);
-  if (const auto* node = t.find("stiffness"); node && !self_contact)
-    t.fail(*node, "bodies touch each other by 'contact.self' = true, which has a stiffness of its own");
+  t.get("bodies", bodies), t.get("stiffness", stiffness, 0, 1e12);
+  const auto *about_bodies = t.find("bodies"), *about_stiffness = t.find("stiffness");
+  if (about_bodies && !bodies && self_contact && !t.find("self"))
+    t.fail(*about_bodies, "for bodies that do not touch each other, write 'contact.self' = false");
+  if (self_contact || !bodies) return;
+  if (about_bodies) t.fail(*about_bodies, "for bodies that touch each other, write 'contact.self' = true");
+  if (about_stiffness)
+    t.fail(*about_stiffness,
+           "for bodies that touch each other, write 'contact.self' = true, whose stiffness follows "
+           "the material");
 }
 
 void read_top(TomlTable& top, Scene& s, Files& files) {

@@ -59,7 +59,7 @@ class Collisions {
   std::optional<SelfContact> surface_;
   SurfaceWeights weights_;      // without self-contact; empty before the first update_weights()
   SurfaceTargetCache targets_;  // of these
-  bool implicit_;  // steps of the scene
+  bool implicit_;               // steps of the scene
 };
 
 }  // namespace geo

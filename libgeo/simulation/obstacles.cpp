@@ -1,6 +1,6 @@
 // Pressure of a penalty = stiffness · areal density · depth, areal density = mean of nodal mass /
-// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth. Contacts are sought within twice the
-// motion expected in the step, plus a spacing.
+// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth. Contacts are sought within twice
+// the motion expected in the step, plus a spacing.
 #include "simulation/obstacles.h"
 
 #include <algorithm>
@@ -58,8 +58,8 @@ ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
     if (!(count[m] > 0)) continue;
     scale.spacing += spacing[m] / double(n);
     scale.areal_density[m] /= count[m], spacing[m] /= count[m];
-    scale.stiff[m] = standing_heights * materials[m].density * gravity.norm() +
-                     relative_stiffness * materials[m].young / spacing[m];
+    scale.stiff[m] =
+        standing_heights * materials[m].density * gravity.norm() + relative_stiffness * materials[m].young / spacing[m];
   }
   for (const Vec3& v : step.motion.velocity) scale.fastest = std::max(scale.fastest, v.norm());
   scale.fall = step.dt * gravity.norm();
@@ -77,8 +77,7 @@ PenaltyPressure pressure_of(double stiffness, const ContactScale& scale, const O
     result.pressure = of[0];
     return result;
   }
-  for (std::size_t i = 0; i < step.solid.size(); ++i)
-    result.factor.push_back(of[step.solid.materials().index(i)]);
+  for (std::size_t i = 0; i < step.solid.size(); ++i) result.factor.push_back(of[step.solid.materials().index(i)]);
   return result;
 }
 

@@ -46,7 +46,7 @@ class Run {
   Vec3 velocity(std::uint32_t body) const {
     return mean(body, [&](std::size_t i) { return sim_.state().motion.velocity[i]; });
   }
-  // Of the centre of the first body, over all frames.
+  // The greatest height of the first body's centre, over all frames.
   double highest() const { return highest_; }
   double lowest_point() const {
     double lowest = 1e300;
@@ -94,22 +94,31 @@ std::vector<Slope> slopes(double degrees, double friction) {
   const double angle = degrees * std::numbers::pi / 180;
   const Vec3 pull = gravity * Vec3(std::sin(angle), 0, -std::cos(angle)), down(std::cos(angle), 0, -std::sin(angle)),
              up(std::sin(angle), 0, std::cos(angle));
-  const std::string mu = "friction = " + number(friction) + "\n", turn = "rotation = [0, 1, 0, " + number(degrees) + "]\n";
+  const std::string mu = "friction = " + number(friction) + "\n",
+                    turn = "rotation = [0, 1, 0, " + number(degrees) + "]\n";
   const TriangleMesh model = make_block({1, 1, 0.5}, 0.25);
   // A moving plane takes the body along: in its frame nothing differs.
   const std::string keys = "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [4, " + number(-4 * down.x()) + ", 0, " +
                            number(-4 * down.z()) + ", 0, 0, 1, 0]]\n";
   const std::string along = "velocity = " + row(-down) + "\n";
-  return {{"Ground, gravity tilted", "gravity = " + row(pull) + "\n" + block + firm + "[ground]\n" + mu, {model}, 0,
-           Vec3::UnitX()},
-          {"Ground, tilted", block + turn + firm + "[ground]\nnormal = " + row(up) + "\n" + mu, {model}, 0, down},
-          {"Plane that moves up at 1 m/s", block + turn + along + firm + "[[obstacle]]\nnormal = [0, 0, 1]\n" + turn + mu +
-                                               keys,
-           {model}, 0, down},
-          {"Body on a body", "gravity = " + row(pull) + "\n" + block +
-                                 "[[body]]\nmesh = 'b'\nnodes = 100\nposition = [0.5, 1.03, 0.5001]\n" + firm +
-                                 "[[grip]]\nbox = [-1, -1, -1, 9, 9, 0.3]\n[contact]\n" + mu,
-           {make_block({6, 3, 0.5}, 0.5), make_block({0.8, 0.8, 0.5}, 0.25)}, 1, Vec3::UnitX()}};
+  return {
+      {"Ground, gravity tilted",
+       "gravity = " + row(pull) + "\n" + block + firm + "[ground]\n" + mu,
+       {model},
+       0,
+       Vec3::UnitX()},
+      {"Ground, tilted", block + turn + firm + "[ground]\nnormal = " + row(up) + "\n" + mu, {model}, 0, down},
+      {"Plane that moves up at 1 m/s",
+       block + turn + along + firm + "[[obstacle]]\nnormal = [0, 0, 1]\n" + turn + mu + keys,
+       {model},
+       0,
+       down},
+      {"Body on a body",
+       "gravity = " + row(pull) + "\n" + block + "[[body]]\nmesh = 'b'\nnodes = 100\nposition = [0.5, 1.03, 0.5001]\n" +
+           firm + "[[grip]]\nbox = [-1, -1, -1, 9, 9, 0.3]\n[contact]\n" + mu,
+       {make_block({6, 3, 0.5}, 0.5), make_block({0.8, 0.8, 0.5}, 0.25)},
+       1,
+       Vec3::UnitX()}};
 }
 
 }  // namespace
@@ -123,10 +132,12 @@ std::vector<Finding> standing(int size) {
               {make_block({1, 1, 1}, edge)});
       const double from = run.centre(0).z();
       run.advance(size ? 48 : 16);
-      const std::string what = "Cube that stands, " + std::to_string(std::lround(1 / edge)) +
-                               " squares a side, contact.self = " + self;
-      found.push_back({what + ": lowest point, m", "0, less the depth of the penalty", run.lowest_point(), 0, 1e-3, true});
-      found.push_back({what + ": highest rise of its centre, m", "≤ 0", std::max(0.0, run.highest() - from), 0, 1e-5, true});
+      const std::string what =
+          "Cube that stands, " + std::to_string(std::lround(1 / edge)) + " squares a side, contact.self = " + self;
+      found.push_back(
+          {what + ": lowest point, m", "0, less the depth of the penalty", run.lowest_point(), 0, 1e-3, true});
+      found.push_back(
+          {what + ": highest rise of its centre, m", "≤ 0", std::max(0.0, run.highest() - from), 0, 1e-5, true});
     }
   return found;
 }

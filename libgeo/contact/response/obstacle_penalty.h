@@ -34,8 +34,8 @@ class ObstaclePenalty : public Potential {
 
   /// Makes contacts of the vertices that may reach the obstacle in this step: those nearer than
   /// `reach`, model units. `weights` must outlive this. `surface`: targets of surface vertices when
-  /// the step begins (surface_targets.h). `slip_regularisation`: model units. `pressure_factor`: per
-  /// node, of the pressure on the surface that it carries; empty: 1.
+  /// the step begins (surface_targets.h). `slip_regularisation`: model units. `pressure_factor`: of
+  /// nodes, of the pressure on the surface that each carries; empty: 1.
   void find_contacts(const SurfaceWeights& weights, std::span<const Vec3> surface, double reach,
                      double slip_regularisation, std::span<const double> pressure_factor = {});
   /// Whether no vertex may reach the obstacle.

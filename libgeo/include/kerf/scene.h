@@ -172,9 +172,9 @@ struct Scene {
   std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides
   bool ground = false;               ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
-  /// Penalty: acceleration per depth, 1/s². 0: a pressure per depth of 1000 ρ |g| + 2 E / h. A body
-  /// of height H then stands at most H / 1000 deep, and by half of what it is compressed between two
-  /// nodes, h apart.
+  /// Penalty: acceleration per depth, 1/s². 0: a pressure per depth of 1000 ρ |g| + 2 E / h. Then a
+  /// body of height H stands at most H / 1000 deep, and at most as deep as half of the compression
+  /// between two nodes, h apart.
   double ground_stiffness = 0;
   double friction = 0.5;         ///< of the ground: Coulomb's coefficient
   Vec3 gravity = {0, 0, -9.81};  ///< model units per s²

@@ -13,8 +13,9 @@
 
 namespace geo {
 
-/// E(u) = Σ ½ m/Δt² |u − ũ|² − f · (u − u₀) + Ψ(u) + contact, with the inertial target ũ = u₀ + Δt v₀
-/// (less damping) and loads f. Fixed nodes have ũ = u₀ and no gradient. Values are per island.
+/// E(u) = Σ ½ m/Δt² |u − ũ|² − f · (u − u₀) + Ψ(u) + contact, with the inertial target ũ = u₀ +
+/// Δt v₀ (less damping) and loads f. Fixed nodes have ũ = u₀ and no gradient. Values are those of
+/// islands.
 class IncrementalPotential {
  public:
   /// Refers to the problem and what it refers to.
@@ -35,8 +36,8 @@ class IncrementalPotential {
   /// where given, receives the elastic response that force() and linearise() need.
   void evaluate(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& value,
                 ElasticResponse* response = nullptr);
-  /// Begins a Newton iterate where the active islands were at their last evaluate(). From the second
-  /// one on, takes the bounds of friction there, and adds what this changes of E to `value`.
+  /// Begins a Newton iterate where the active islands were at their last evaluate(). From the
+  /// second one on, takes the bounds of friction there, and adds what this changes of E to `value`.
   void begin_iterate(const ActiveIslands& active, std::vector<double>& value) {
     contact_.begin_iterate(islands_.of_nodes(), active.mask(), value);
   }

@@ -5,9 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kerf/parallel.h"
 #include "mechanics/solver/fixed_nodes.h"
 
 namespace geo {
+namespace {
+
+constexpr std::size_t terms_per_task = 64;  // smallest task worth a thread
+
+}  // namespace
 
 MomentumBalance::MomentumBalance(const IncrementalPotential& potential, const ActiveIslands& active,
                                  const std::vector<Vec3>& u)
@@ -40,19 +46,23 @@ void MomentumBalance::correct(std::vector<Vec3>& direction) {
 }
 
 void MomentumBalance::mark_unbalanced(const std::vector<Vec3>& direction, std::vector<char>& unbalanced) const {
-  // Of the contact force: the coefficient of friction errs by as much in this step. Measured in
-  // docs/decisions/088.
+  // Error over the contact force: the coefficient of friction errs by as much in this step.
+  // Measured in docs/decisions/088.
   constexpr double tolerance = 1e-2;
+  std::vector<Vec3> promised(terms_.size()), found(terms_.size());
+  parallel_for(terms_.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const PotentialSum::LinearisedTerm& term = terms_[k].term;
+      const Vec3 from = weighted_sum(term.stencil, u_), moved = weighted_sum(term.stencil, direction);
+      promised[k] = term.force - term.hessian * moved;
+      found[k] = term.potential->derivatives(term.index, from + moved).force;
+    }
+  });
   std::vector<Vec3> error(mass_.size(), Vec3::Zero());
   std::vector<double> size(mass_.size(), 0);
-  for (const CentreTerm& centre : terms_) {
-    const PotentialSum::LinearisedTerm& term = centre.term;
-    const Vec3 from = weighted_sum(term.stencil, u_), moved = weighted_sum(term.stencil, direction);
-    const Vec3 promised = term.force - term.hessian * moved,
-               found = term.potential->derivatives(term.index, from + moved).force;
-    for (const auto& [f, weight] : centre.weight)
-      error[f] += weight * (found - promised), size[f] += std::abs(weight) * promised.norm();
-  }
+  for (std::size_t k = 0; k < terms_.size(); ++k)
+    for (const auto& [f, weight] : terms_[k].weight)
+      error[f] += weight * (found[k] - promised[k]), size[f] += std::abs(weight) * promised[k].norm();
   for (std::size_t f = 0; f < error.size(); ++f)
     if (error[f].norm() > tolerance * size[f]) unbalanced[island_[f]] = 1;
 }
@@ -62,29 +72,43 @@ void MomentumBalance::add_inertia_and_loads(const std::vector<Vec3>& direction) 
   const double per_mass = 1 / (problem.dt * problem.dt);
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (const auto f = islands_.free_of_nodes()[i]; moves_[f])
-      residual_[f] += potential_.load()[i] - problem.solid.mass[i] * per_mass *
-                                                 (u_[i] + direction[i] - potential_.inertial_target()[i]);
+      residual_[f] += potential_.load()[i] -
+                      problem.solid.mass[i] * per_mass * (u_[i] + direction[i] - potential_.inertial_target()[i]);
+}
+
+// The sums of a stencil's weights in each free-floating island that moves. Both points of a contact
+// within one island sum to zero, up to rounding, and are left out.
+std::vector<std::pair<std::uint32_t, double>> MomentumBalance::centre_weights(Stencil stencil) const {
+  constexpr double rounding = 1e-12;
+  std::vector<std::pair<std::uint32_t, double>> sums;
+  for (const NodeWeight& e : stencil) {
+    const auto f = islands_.free_of_nodes()[e.node];
+    if (!moves_[f]) continue;
+    const auto known = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return sum.first == f; });
+    if (known == sums.end())
+      sums.emplace_back(f, e.weight);
+    else
+      known->second += e.weight;
+  }
+  std::erase_if(sums, [](const auto& sum) { return std::abs(sum.second) < rounding; });
+  return sums;
 }
 
 void MomentumBalance::add_contact(const std::vector<Vec3>& direction) {
-  for (const PotentialSum::LinearisedTerm& term : potential_.contact().linearised_terms()) {
-    CentreTerm centre{{}, term};
-    for (const NodeWeight& e : term.stencil) {
-      const auto f = islands_.free_of_nodes()[e.node];
-      if (!moves_[f]) continue;
-      auto known = centre.weight.begin();
-      while (known != centre.weight.end() && known->first != f) ++known;
-      if (known == centre.weight.end())
-        centre.weight.emplace_back(f, e.weight);
-      else
-        known->second += e.weight;
+  const std::vector<PotentialSum::LinearisedTerm> all = potential_.contact().linearised_terms();
+  std::vector<CentreTerm> centres(all.size());
+  std::vector<Vec3> force(all.size());
+  parallel_for(all.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      centres[k] = {centre_weights(all[k].stencil), all[k]};
+      if (!centres[k].weight.empty())
+        force[k] = all[k].force - all[k].hessian * weighted_sum(all[k].stencil, direction);
     }
-    // Both points of a contact within one island sum to zero, up to rounding.
-    std::erase_if(centre.weight, [](const auto& w) { return std::abs(w.second) < 1e-12; });
-    if (centre.weight.empty()) continue;
-    const Vec3 force = term.force - term.hessian * weighted_sum(term.stencil, direction);
-    for (const auto& [f, weight] : centre.weight) residual_[f] += weight * force;
-    terms_.push_back(std::move(centre));
+  });
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (centres[k].weight.empty()) continue;
+    for (const auto& [f, weight] : centres[k].weight) residual_[f] += weight * force[k];
+    terms_.push_back(std::move(centres[k]));
   }
 }
 

@@ -14,11 +14,12 @@
 
 namespace geo {
 
-/// Forces, inertia and contact of the free-floating islands that contact touches and nothing clamps,
-/// along one Newton direction.
+/// Forces, inertia and contact of the free-floating islands that contact touches and nothing
+/// clamps, along one Newton direction.
 class MomentumBalance {
  public:
-  /// At the iterate u, after its force(). `active`: islands that the direction moves. Refers to all.
+  /// At the iterate u, after its force(). `active`: islands that the direction moves. Refers to
+  /// all of them.
   MomentumBalance(const IncrementalPotential& potential, const ActiveIslands& active, const std::vector<Vec3>& u);
 
   /// Adds to the direction the translation of each of these islands that it lacks, to first order:
@@ -37,6 +38,7 @@ class MomentumBalance {
     std::vector<std::pair<std::uint32_t, double>> weight;  // free-floating island, sum of the weights there
     PotentialSum::LinearisedTerm term;
   };
+  std::vector<std::pair<std::uint32_t, double>> centre_weights(Stencil stencil) const;
   void add_inertia_and_loads(const std::vector<Vec3>& direction);
   void add_contact(const std::vector<Vec3>& direction);
   std::vector<Vec3> product(const std::vector<Vec3>& p) const;

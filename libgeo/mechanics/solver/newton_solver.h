@@ -44,7 +44,7 @@ class NewtonSolver {
   std::vector<double> accuracy_;         // per island, in spacings
   std::vector<double> length_;           // per island: of the direction, largest over nodes, in spacings
   int iterates_ = 0;
-  std::vector<double> moved_;            // per island: distance since its stiffness was computed, in spacings
+  std::vector<double> moved_;  // per island: distance since its stiffness was computed, in spacings
 };
 
 }  // namespace geo

@@ -14,8 +14,7 @@
 // less by c ŝ ŝᵀ, with ŝ = s / |s|.
 //
 // N is that of the step's beginning in Newton's first iterate, and that of the iterate in all
-// others. So what lands, or is met by other points than before, has the friction of this step's
-// force (docs/decisions/088).
+// others. So a body that lands has the friction of this step's force (docs/decisions/088).
 #pragma once
 
 #include <algorithm>
@@ -72,7 +71,7 @@ struct LaggedFriction {
   }
 };
 
-/// What Newton's method remembers of the friction of one contact.
+/// The friction of one contact, as Newton's method remembers it.
 struct FrictionMemory {
   double normal_force = 0;                             ///< N: that the bound is of
   Vec3 slip = Vec3::Zero(), last_slip = Vec3::Zero();  ///< of the present iterate and the one before

@@ -71,8 +71,8 @@ class Potential {
   virtual Derivatives derivatives(std::size_t k, const Vec3& d) const = 0;
 
   /// Begins a Newton iterate in which the k-th term has relative displacement d. Takes the bound of
-  /// its friction from its normal force there, except in the first iterate of a substep. Returns the
-  /// change of energy(k, d) by that, J. Several threads may call this, for different k.
+  /// its friction from its normal force there, except in the first iterate of a substep. Returns
+  /// the change of energy(k, d) by that, J. Several threads may call this, for different k.
   virtual double begin_iterate(std::size_t /*k*/, const Vec3& /*d*/) { return 0; }
 
   /// An upper bound of the k-th Hessian's eigenvalues, N/m. 0: explicit steps ignore the term.

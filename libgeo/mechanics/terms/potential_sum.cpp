@@ -130,8 +130,8 @@ std::vector<PotentialSum::LinearisedTerm> PotentialSum::linearised_terms() const
   std::vector<LinearisedTerm> terms;
   for (std::size_t t = 0; t < terms_.size(); ++t)
     if (!idle_[t])
-      terms.push_back({terms_[t].potential, terms_[t].index, stencils_[t], force_[t],
-                       hessian_[t].topRows<3>().cast<double>()});
+      terms.push_back(
+          {terms_[t].potential, terms_[t].index, stencils_[t], force_[t], hessian_[t].topRows<3>().cast<double>()});
   return terms;
 }
 

@@ -179,7 +179,7 @@ TEST_CASE("what a solid keeps from step to step changes nothing but time") {
     for (int k = 1; k <= 8; ++k) {
       if (random.below(2))
         solid.update(body, split(body, front, blade_at(a, b, down, static_cast<int>(front.step) + 1)), state);
-      // What touches an obstacle has another stiffness upwards.
+      // Nodes that touch an obstacle have another stiffness upwards.
       SurfaceWeights weights;
       weights.rebuild(body, solid);
       const auto touch = [&](ObstaclePenalty& ground) {

@@ -36,9 +36,10 @@ class MomentumBalance {
   // A contact term as the centres of the free-floating islands see it.
   struct CentreTerm {
     std::vector<std::pair<std::uint32_t, double>> weight;  // free-floating island, sum of the weights there
-    PotentialSum::LinearisedTerm term;
+    PotentialSum::LinearisedTerm term;                     // with the true curvature
   };
   std::vector<std::pair<std::uint32_t, double>> centre_weights(Stencil stencil) const;
+  Mat3 curvature(const PotentialSum::LinearisedTerm& term, const Vec3& at) const;
   void add_inertia_and_loads(const std::vector<Vec3>& direction);
   void add_contact(const std::vector<Vec3>& direction);
   std::vector<Vec3> product(const std::vector<Vec3>& p) const;

@@ -13,7 +13,7 @@ namespace geo {
 namespace {
 
 constexpr int most_iterations = 20;  // more are slower than two steps of half the length
-constexpr int most_balanced = 4;     // further ones end where displacements are accurate
+constexpr int most_balanced = 8;     // further ones end where displacements are accurate
 constexpr int most_halvings = 16;    // of a direction; each trial is at most half the one before
 // Spacings that an island may move before its stiffness is recomputed: strains change by about a
 // tenth. Measured in docs/decisions/044 and 048.

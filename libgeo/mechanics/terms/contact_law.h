@@ -13,8 +13,9 @@
 // The secant Hessian is that of E where |s| < ε. Elsewhere it bounds that of E from above, which is
 // less by c ŝ ŝᵀ, with ŝ = s / |s|.
 //
-// N is that of the step's beginning in Newton's first iterate, and that of the iterate in all
-// others. So a body that lands has the friction of this step's force (docs/decisions/088).
+// N is that of the step's beginning, where momentum balanced. A contact that did not press then takes
+// N from each Newton iterate but the first, so a body that lands does not slide freely for a step
+// (docs/decisions/088).
 #pragma once
 
 #include <algorithm>
@@ -75,14 +76,16 @@ struct LaggedFriction {
 struct FrictionMemory {
   double normal_force = 0;                             ///< N: that the bound is of
   Vec3 slip = Vec3::Zero(), last_slip = Vec3::Zero();  ///< of the present iterate and the one before
+  bool pressed = false;                                ///< when the substep began
   bool has_iterate = false;                            ///< of the substep
 
   /// Begins a substep with the normal force of that moment.
-  void begin_substep(double normal) { *this = {normal, Vec3::Zero(), Vec3::Zero(), false}; }
-  /// Begins an iterate. Returns the change of the normal force that the bound is of.
+  void begin_substep(double normal) { *this = {normal, Vec3::Zero(), Vec3::Zero(), normal > 0, false}; }
+  /// Begins an iterate. Returns the change of the normal force that the bound is of: none where the
+  /// contact pressed when the substep began.
   double begin_iterate(const Vec3& new_slip, double normal) {
     last_slip = slip, slip = new_slip;
-    const double change = has_iterate ? normal - normal_force : 0;
+    const double change = has_iterate && !pressed ? normal - normal_force : 0;
     normal_force += change, has_iterate = true;
     return change;
   }

@@ -132,7 +132,7 @@ struct SwitchedSprings : Potential {
   std::size_t size() const override { return nodes.size(); }
   Stencil stencil(std::size_t k) const override { return nodes[k]; }
   double energy(std::size_t k, const Vec3& d) const override { return on[k] ? 0.5 * d.dot(stiffness[k] * d) : 0; }
-  Derivatives derivatives(std::size_t k, const Vec3& d) override {
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override {
     return on[k] ? Derivatives{-stiffness[k] * d, stiffness[k]} : Derivatives{};
   }
 };

@@ -99,7 +99,7 @@ struct Bed : Potential {
   std::size_t size() const override { return on.size(); }
   Stencil stencil(std::size_t k) const override { return {&on[k], 1}; }
   double energy(std::size_t, const Vec3& d) const override { return 0.5 * firm * std::pow(std::max(0.0, -d.y()), 2); }
-  Derivatives derivatives(std::size_t, const Vec3& d) override {
+  Derivatives derivatives(std::size_t, const Vec3& d) const override {
     if (d.y() < 0) return {-firm * d.y() * Vec3::UnitY(), firm * Vec3::UnitY() * Vec3::UnitY().transpose()};
     return {};
   }

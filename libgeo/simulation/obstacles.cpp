@@ -1,6 +1,6 @@
 // Pressure of a penalty = stiffness · areal density · depth, areal density = mean of nodal mass /
-// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth. Contacts are sought within twice
-// the motion expected in the step, plus a spacing.
+// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth, as far as a step resolves the second
+// part. Contacts are sought within twice the motion expected in the step, plus a spacing.
 #include "simulation/obstacles.h"
 
 #include <algorithm>
@@ -19,6 +19,10 @@ constexpr double standing_heights = 1000;
 // Pressure over depth, in E / h: as self-contact (contact/response/penalty_assembly.cpp), so that
 // what presses is half as deep as the material between two nodes is compressed.
 constexpr double relative_stiffness = 2;
+// The greatest stiffness of that share over mass, in 1 / Δt²: the period of a layer of nodes, 2π / 4
+// steps, is no shorter than a step. Stiffer contacts open and close within the accuracy of a
+// solve.
+constexpr double resolved_stiffness = 16;
 
 Eigen::Isometry3d isometry(const Pose& p) {
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
@@ -58,8 +62,9 @@ ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
     if (!(count[m] > 0)) continue;
     scale.spacing += spacing[m] / double(n);
     scale.areal_density[m] /= count[m], spacing[m] /= count[m];
-    scale.stiff[m] =
-        standing_heights * materials[m].density * gravity.norm() + relative_stiffness * materials[m].young / spacing[m];
+    scale.stiff[m] = standing_heights * materials[m].density * gravity.norm() +
+                     std::min(relative_stiffness * materials[m].young / spacing[m],
+                              resolved_stiffness * materials[m].density * spacing[m] / (step.dt * step.dt));
   }
   for (const Vec3& v : step.motion.velocity) scale.fastest = std::max(scale.fastest, v.norm());
   scale.fall = step.dt * gravity.norm();

@@ -13,9 +13,9 @@
 // The secant Hessian is that of E where |s| < ε. Elsewhere it bounds that of E from above, which is
 // less by c ŝ ŝᵀ, with ŝ = s / |s|.
 //
-// N is that of the step's beginning, where momentum balanced. A contact that did not press then takes
-// N from each Newton iterate but the first, so a body that lands does not slide freely for a step
-// (docs/decisions/088).
+// N is that of the step's beginning, where momentum balanced. A contact that did not press then
+// takes N from each Newton iterate but the first, so a body that lands does not slide freely for a
+// step (docs/decisions/088).
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Pressure of a penalty = stiffness · areal density · depth, areal density = mean of nodal mass /
-// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth, as far as a step resolves the second
-// part. Contacts are sought within twice the motion expected in the step, plus a spacing.
+// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth, as far as a step resolves it.
+// Contacts are sought within twice the motion expected in the step, plus a spacing.
 #include "simulation/obstacles.h"
 
 #include <algorithm>
@@ -19,9 +19,8 @@ constexpr double standing_heights = 1000;
 // Pressure over depth, in E / h: as self-contact (contact/response/penalty_assembly.cpp), so that
 // what presses is half as deep as the material between two nodes is compressed.
 constexpr double relative_stiffness = 2;
-// The greatest stiffness of that share over mass, in 1 / Δt²: the period of a layer of nodes, 2π / 4
-// steps, is no shorter than a step. Stiffer contacts open and close within the accuracy of a
-// solve.
+// The greatest stiffness of that share over mass, in 1 / Δt²: a layer of nodes has a period of 2π / 4
+// steps, no shorter than one. Stiffer contacts open and close within the accuracy of a solve.
 constexpr double resolved_stiffness = 16;
 
 Eigen::Isometry3d isometry(const Pose& p) {

@@ -69,7 +69,8 @@ void ObstaclePenalty::begin_substep(const std::vector<Vec3>& u, double from, dou
     const Vec3 local = to_local * c.start;
     const RigidShape::Field field = shape_->at(local);
     c.distance = field.distance;
-    c.friction.begin_substep(c.stiffness * std::max(0.0, -field.distance));
+    const double normal = c.stiffness * std::max(0.0, -field.distance);
+    c.friction.begin_substep(normal, normal > 0 ? NormalForce::balanced : NormalForce::estimated);
     c.normal = start.linear() * field.normal;
     c.stuck = now_ * local;
     c.activation_distance = std::max(0.0, c.distance - (c.start - c.stuck).norm()) / c.weight_norm;

@@ -59,7 +59,7 @@ class SelfContactPenalty : public Potential {
   /// Activation distances hold in substeps that begin where the contacts were added.
   void begin_substep(const std::vector<Vec3>&, double from, double) override {
     at_start_ = from <= 0;
-    for (Contact& c : contacts_) c.friction.begin_substep(c.stiffness * std::max(0.0, c.depth));
+    for (Contact& c : contacts_) c.friction.begin_substep(c.stiffness * std::max(0.0, c.depth), NormalForce::estimated);
   }
   /// Distance of a contact over the norm of its weights.
   double activation_distance(std::size_t k) const override { return at_start_ ? contacts_[k].activation_distance : 0; }

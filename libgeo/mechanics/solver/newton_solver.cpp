@@ -70,7 +70,7 @@ bool NewtonSolver::iterate(bool first, StepReport& report) {
   const std::vector<RigidMotion> rotations = rotation_.rotations(at_.u, direction_.step);
   std::vector<char> searching = unconverged(rotations);
   // A direction that only balances momentum may alternate between contacts without end.
-  if (++iterates_ <= most_balanced) balance.mark_unbalanced(direction_.step, searching);
+  if (++iterates_ <= most_balanced) balance.mark_unbalanced(direction_.step, iterates_, searching);
   for (std::size_t p = 0; p < searching.size(); ++p) searching[p] = searching[p] && active_[p];
   return line_search(rotations, std::move(searching));
 }

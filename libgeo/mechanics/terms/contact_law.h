@@ -13,12 +13,12 @@
 // The secant Hessian is that of E where |s| < ε. Elsewhere it bounds that of E from above, which is
 // less by c ŝ ŝᵀ, with ŝ = s / |s|.
 //
-// N is that of the step's beginning, where momentum balanced. A contact that did not press then
-// takes N from each Newton iterate but the first, so a body that lands does not slide freely for a
-// step (docs/decisions/088).
+// N is that of the step's beginning where the same contact balanced momentum then. A contact that is
+// new in the step takes N from each Newton iterate but the first (docs/decisions/088).
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include "mechanics/terms/potential.h"
 
@@ -72,20 +72,26 @@ struct LaggedFriction {
   }
 };
 
+/// Whether a contact's normal force at the beginning of a substep is what balanced momentum there.
+enum class NormalForce : std::uint8_t {
+  balanced,  ///< it is: the same contact pressed in the step before
+  estimated  ///< it is not: the contact is new, or one of others than before
+};
+
 /// The friction of one contact, as Newton's method remembers it.
 struct FrictionMemory {
   double normal_force = 0;                             ///< N: that the bound is of
   Vec3 slip = Vec3::Zero(), last_slip = Vec3::Zero();  ///< of the present iterate and the one before
-  bool pressed = false;                                ///< when the substep began
-  bool has_iterate = false;                            ///< of the substep
+  NormalForce kind = NormalForce::estimated;
+  bool has_iterate = false;  ///< of the substep
 
   /// Begins a substep with the normal force of that moment.
-  void begin_substep(double normal) { *this = {normal, Vec3::Zero(), Vec3::Zero(), normal > 0, false}; }
-  /// Begins an iterate. Returns the change of the normal force that the bound is of: none where the
-  /// contact pressed when the substep began.
+  void begin_substep(double normal, NormalForce of) { *this = {normal, Vec3::Zero(), Vec3::Zero(), of, false}; }
+  /// Begins an iterate. Returns the change of the normal force that the bound is of, by one that was
+  /// estimated.
   double begin_iterate(const Vec3& new_slip, double normal) {
     last_slip = slip, slip = new_slip;
-    const double change = has_iterate && !pressed ? normal - normal_force : 0;
+    const double change = has_iterate && kind == NormalForce::estimated ? normal - normal_force : 0;
     normal_force += change, has_iterate = true;
     return change;
   }

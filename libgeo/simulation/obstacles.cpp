@@ -19,8 +19,9 @@ constexpr double standing_heights = 1000;
 // Pressure over depth, in E / h: as self-contact (contact/response/penalty_assembly.cpp), so that
 // what presses is half as deep as the material between two nodes is compressed.
 constexpr double relative_stiffness = 2;
-// The greatest stiffness of that share over mass, in 1 / Δt²: a layer of nodes has a period of 2π / 4
-// steps, no shorter than one. Stiffer contacts open and close within the accuracy of a solve.
+// The greatest stiffness of that share over mass, in 1 / Δt²: a layer of nodes has a period of
+// 2π / 4 steps, no shorter than one. Stiffer contacts open and close within the accuracy of
+// a solve.
 constexpr double resolved_stiffness = 16;
 
 Eigen::Isometry3d isometry(const Pose& p) {

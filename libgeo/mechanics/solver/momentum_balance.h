@@ -29,8 +29,8 @@ class MomentumBalance {
   void correct(std::vector<Vec3>& direction);
   /// Sets unbalanced[island] to 1 where the force of contact on a free-floating island, at the end
   /// of the direction, is not the one that its linearisation promised: what sticks begins to slide,
-  /// or a contact opens. Also where bodies touch each other in one of the first iterates, which know
-  /// their normal forces by an estimate only. `iterate`: from 1.
+  /// or a contact opens. Also where bodies touch each other in one of the first iterates, which
+  /// know their normal forces by an estimate only. `iterate`: from 1.
   void mark_unbalanced(const std::vector<Vec3>& direction, int iterate, std::vector<char>& unbalanced) const;
 
  private:

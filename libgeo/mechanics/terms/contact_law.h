@@ -13,8 +13,8 @@
 // The secant Hessian is that of E where |s| < ε. Elsewhere it bounds that of E from above, which is
 // less by c ŝ ŝᵀ, with ŝ = s / |s|.
 //
-// N is that of the step's beginning where the same contact balanced momentum then. A contact that is
-// new in the step takes N from each Newton iterate but the first (docs/decisions/088).
+// N is that of the step's beginning where the same contact balanced momentum then. A contact that
+// is new in the step takes N from each Newton iterate but the first (docs/decisions/088).
 #pragma once
 
 #include <algorithm>
@@ -87,7 +87,7 @@ struct FrictionMemory {
 
   /// Begins a substep with the normal force of that moment.
   void begin_substep(double normal, NormalForce of) { *this = {normal, Vec3::Zero(), Vec3::Zero(), of, false}; }
-  /// Begins an iterate. Returns the change of the normal force that the bound is of, by one that was
+  /// Begins an iterate. Returns the change of the normal force that the bound is of, if that was
   /// estimated.
   double begin_iterate(const Vec3& new_slip, double normal) {
     last_slip = slip, slip = new_slip;

@@ -253,6 +253,23 @@ void read_checkpoints(TomlTable& t, Scene& s) {
   }
 }
 
+// Bodies had a penalty of their own once, where they did not have self-contact. Keys of it are read
+// where they mean what they meant.
+void skip_former_contact(TomlTable& t, bool self_contact) {
+  bool bodies = true;
+  double stiffness = 0;
+  t.get("bodies", bodies), t.get("stiffness", stiffness, 0, 1e12);
+  const auto *about_bodies = t.find("bodies"), *about_stiffness = t.find("stiffness");
+  if (about_bodies && !bodies && self_contact && !t.find("self"))
+    t.fail(*about_bodies, "for bodies that do not touch each other, write 'contact.self' = false");
+  if (self_contact || !bodies) return;
+  if (about_bodies) t.fail(*about_bodies, "for bodies that touch each other, write 'contact.self' = true");
+  if (about_stiffness)
+    t.fail(*about_stiffness,
+           "for bodies that touch each other, write 'contact.self' = true, whose stiffness follows "
+           "the material");
+}
+
 void read_top(TomlTable& top, Scene& s, Files& files) {
   top.section("material", [&](TomlTable& t) { read_material(t, s.material); });
   top.section("fracture", [&](TomlTable& t) {
@@ -281,15 +298,14 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     t.get("point", s.ground_point);
     t.get("normal", s.ground_normal);
     t.get("stiffness", s.ground_stiffness, 0, 1e12);
-    t.get("friction", s.friction, 0, 1);
+    t.get("friction", s.friction, 0, 10);
     if (!(s.ground_normal.norm() > 0)) t.fail("'ground.normal' has no direction");
   });
   top.section("contact", [&](TomlTable& t) {
     t.get("self", s.self_contact);
     t.get("friction", s.contact.friction, 0, 10);
     t.get("gap", s.contact.gap, 1e-9, 0.1);
-    t.get("bodies", s.body_contact);
-    t.get("stiffness", s.contact_stiffness, 0, 1e12);
+    skip_former_contact(t, s.self_contact);
   });
   top.section("time", [&](TomlTable& t) {
     t.get("frames", s.frames, 1, 1000000);

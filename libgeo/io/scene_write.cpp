@@ -223,8 +223,6 @@ void SceneWriter::write(const Scene& s) {
   table("[contact]");
   flag("self", s.self_contact);
   key("friction", s.contact.friction), key("gap", s.contact.gap);
-  flag("bodies", s.body_contact);
-  key("stiffness", s.contact_stiffness);
   time(s);
   for (const auto& [file, of] : s.score_files) {
     table("[[score]]");

@@ -54,8 +54,19 @@ StepVeto Collisions::embedding_check(const Body& body, const Solid& solid, const
   };
 }
 
+void Collisions::update_weights(const Body& body, const Solid& solid) {
+  if (surface_) return surface_->update_weights(body, solid);
+  if (weights_.size() == 0) return weights_.rebuild(body, solid);
+  if (weights_.has_changes()) targets_.invalidate(weights_.update(body, solid));
+  if (weights_.set_rotations(solid)) targets_ = {};
+}
+
 void Collisions::commit(std::optional<EmbeddingPlan> plan, const Body& body, const BodyDelta& delta) {
-  if (!surface_ || delta.crack.empty()) return;
+  if (delta.crack.empty()) return;
+  if (!surface_) {
+    if (weights_.size() > 0) weights_.mark_changed(body, delta);
+    return;
+  }
   if (!plan) throw std::logic_error("no embedding was planned for this crack step");
   surface_->commit(std::move(*plan), body, delta);
 }

@@ -1,5 +1,5 @@
-// Self-contact in the time loop (§ 3.3): the surface of the bodies, where the scene wants it kept
-// from crossing itself.
+// The deformed surface in the time loop, on which all contact acts, and self-contact (§ 3.3) where
+// the scene wants the surface kept from crossing itself.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,8 @@
 
 namespace geo {
 
-/// Adapts a SelfContact to the scene's options; without self-contact all methods do nothing.
+/// The surface of the bodies by Eq. 1, and a SelfContact with the scene's options where the scene
+/// has it. Without, begin_step() and finish_step() do nothing, and embeddings need no plan.
 class Collisions {
  public:
   /// `positions`: of living surface vertices in ascending order, as living_positions() gives them;
@@ -33,10 +34,9 @@ class Collisions {
   /// Updates the surface after a crack step, by the plan of its embedding_check(). Throws
   /// std::logic_error if the step cut something and there is no plan.
   void commit(std::optional<EmbeddingPlan> plan, const Body& body, const BodyDelta& delta);
-  /// Makes the surface's weights follow the crack steps.
-  void update_weights(const Body& body, const Solid& solid) {
-    if (surface_) surface_->update_weights(body, solid);
-  }
+  /// Makes the surface's weights follow the crack steps and the rotations of debris. The first call
+  /// costs a pass over the surface, others follow the cuts.
+  void update_weights(const Body& body, const Solid& solid);
 
   /// Sets Coulomb's coefficient of the steps to come.
   void set_friction(double friction) {
@@ -47,17 +47,19 @@ class Collisions {
   bool on() const { return surface_.has_value(); }
   /// World positions of living surface vertices in ascending order; empty without self-contact.
   std::vector<Vec3> living_positions(const Body& body) const;
-  /// The surface's weights, after update_weights(); null without self-contact.
-  const SurfaceWeights* weights() const { return surface_ ? &surface_->weights() : nullptr; }
+  /// The surface's weights, after update_weights().
+  const SurfaceWeights& weights() const { return surface_ ? surface_->weights() : weights_; }
   /// Targets of surface vertices (Eq. 1), after update_weights(). Valid until the next call of a
-  /// method that is not const; empty without self-contact.
-  std::span<const Vec3> targets(const State& motion) {
-    return surface_ ? std::span<const Vec3>(surface_->targets_at(motion.displacement)) : std::span<const Vec3>();
+  /// method that is not const.
+  const std::vector<Vec3>& targets(const State& motion) {
+    return surface_ ? surface_->targets_at(motion.displacement) : targets_.at(weights_, motion.displacement);
   }
 
  private:
   std::optional<SelfContact> surface_;
-  bool implicit_;  // steps of the scene
+  SurfaceWeights weights_;      // without self-contact; empty before the first update_weights()
+  SurfaceTargetCache targets_;  // of these
+  bool implicit_;               // steps of the scene
 };
 
 }  // namespace geo

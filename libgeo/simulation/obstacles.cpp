@@ -1,10 +1,10 @@
 // Pressure of a penalty = stiffness · areal density · depth, areal density = mean of nodal mass /
-// spacing². Contacts are sought within twice the motion expected in the step, plus a spacing.
+// spacing²; without a stiffness (1000 ρ |g| + 2 E / h) · depth, as far as a step resolves it.
+// Contacts are sought within twice the motion expected in the step, plus a spacing.
 #include "simulation/obstacles.h"
 
 #include <algorithm>
 
-#include "contact/response/body_contact.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -14,6 +14,15 @@ namespace {
 constexpr double relative_slip = 1e-2;
 // The least slip regularisation, in node spacings: for steps in which nothing is expected to move.
 constexpr double least_slip = 1e-6;
+// A body of height H that stands on its base is H / 1000 deep: pressure over depth is 1000 ρ |g|.
+constexpr double standing_heights = 1000;
+// Pressure over depth, in E / h: as self-contact (contact/response/penalty_assembly.cpp), so that
+// what presses is half as deep as the material between two nodes is compressed.
+constexpr double relative_stiffness = 2;
+// The greatest stiffness of that share over mass, in 1 / Δt²: a layer of nodes has a period of
+// 2π / 4 steps, no shorter than one. Stiffer contacts open and close within the accuracy of
+// a solve.
+constexpr double resolved_stiffness = 16;
 
 Eigen::Isometry3d isometry(const Pose& p) {
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
@@ -21,67 +30,60 @@ Eigen::Isometry3d isometry(const Pose& p) {
   return at;
 }
 
-// Nodes whose surface may be within reach of a shape; the surface is within a support radius of its
-// nodes. Weights of the surface are needed for these only.
-std::vector<std::uint8_t> near_nodes(const RigidShape& shape, const Eigen::Isometry3d& to_local, const NodeSet& nodes,
-                                     const std::vector<Vec3>& u, double reach) {
-  std::vector<std::uint8_t> near(nodes.size());
-  parallel_for(nodes.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      near[i] = shape.near(to_local * (nodes.position[i] + u[i]), reach + nodes.radius[i]);
-  });
-  return near;
-}
-
-// Whether boxes that contain each body during the step meet: twice the nodes' motion at their
-// present speed, plus a spacing. `fall`: velocity that gravity adds in a step, model units / s.
-bool bodies_may_meet(const ObjectContactStep& step, double fall) {
-  const NodeSet& nodes = step.body.nodes;
-  std::vector<Box3> box;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const std::uint32_t b = step.body_index[i];
-    if (b >= box.size()) box.resize(b + 1);
-    const Vec3 x = nodes.position[i] + step.motion.displacement[i], motion = 2 * step.dt * step.motion.velocity[i];
-    box[b].add(Box3{x.cwiseMin(x + motion), x.cwiseMax(x + motion)}.grown(nodes.spacing[i] + 2 * step.dt * fall));
-  }
-  for (std::size_t a = 0; a < box.size(); ++a)
-    for (std::size_t b = 0; b < a; ++b)
-      if (box[a].meets(box[b])) return true;
-  return false;
-}
+// A pressure over a depth that stands for all materials, Pa/m, and a factor of it for each node.
+struct PenaltyPressure {
+  double pressure = 1;
+  std::vector<double> factor;  // per node; empty where there is one material
+};
 
 // Scales of penalties and search distances in a step.
 struct ContactScale {
-  double areal_density = 1;             // kg / model unit², of the only material; 1 where there are several
-  std::vector<double> pressure_factor;  // per node: its material's areal density; empty where there is one
-  double spacing = 0;                   // mean, of nodes
-  double fastest = 0;                   // of nodes, model units / s
-  double fall = 0;                      // velocity that gravity adds in the step
+  std::vector<double> areal_density;  // per material: mean of nodal mass / spacing², kg / model unit²
+  std::vector<double> stiff;          // per material: pressure over depth where the scene gives no stiffness, Pa/m
+  double spacing = 0;                 // mean, of nodes
+  double fastest = 0;                 // of nodes, model units / s
+  double fall = 0;                    // velocity that gravity adds in the step
 };
 
-// Scenes give stiffness k as acceleration over depth, 1/s². The pressure that accelerates a layer
-// of nodes by k d is k ρ_A d, with the areal density ρ_A the mean of mass / spacing². All current
-// nodes count, so that a restored run computes the same.
+// All current nodes count, so that a restored run computes the same.
 ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
   const Materials& materials = step.solid.materials();
   const NodeSet& nodes = step.body.nodes;
   const std::size_t n = step.solid.size();
-  std::vector<double> density(materials.count(), 0), count(density);
   ContactScale scale;
+  scale.areal_density.assign(materials.count(), 0), scale.stiff = scale.areal_density;
+  std::vector<double> count(materials.count(), 0), spacing = count;
   for (std::size_t i = 0; i < n; ++i) {
     const auto m = materials.index(i);
-    density[m] += step.solid.mass(NodeId(i)) / (nodes.spacing[i] * nodes.spacing[i]), ++count[m];
-    scale.spacing += nodes.spacing[i];
+    scale.areal_density[m] += step.solid.mass(NodeId(i)) / (nodes.spacing[i] * nodes.spacing[i]);
+    spacing[m] += nodes.spacing[i], ++count[m];
   }
-  for (std::size_t m = 0; m < density.size(); ++m) density[m] /= count[m];
-  scale.spacing /= double(n);
-  if (density.size() == 1)
-    scale.areal_density = density[0];
-  else
-    for (std::size_t i = 0; i < n; ++i) scale.pressure_factor.push_back(density[materials.index(i)]);
+  for (std::size_t m = 0; m < count.size(); ++m) {
+    if (!(count[m] > 0)) continue;
+    scale.spacing += spacing[m] / double(n);
+    scale.areal_density[m] /= count[m], spacing[m] /= count[m];
+    scale.stiff[m] = standing_heights * materials[m].density * gravity.norm() +
+                     std::min(relative_stiffness * materials[m].young / spacing[m],
+                              resolved_stiffness * materials[m].density * spacing[m] / (step.dt * step.dt));
+  }
   for (const Vec3& v : step.motion.velocity) scale.fastest = std::max(scale.fastest, v.norm());
   scale.fall = step.dt * gravity.norm();
   return scale;
+}
+
+// Scenes give stiffness k as acceleration over depth, 1/s². The pressure that accelerates a layer
+// of nodes by k d is k ρ_A d, with ρ_A the areal density.
+PenaltyPressure pressure_of(double stiffness, const ContactScale& scale, const ObjectContactStep& step) {
+  std::vector<double> of = scale.stiff;
+  if (stiffness > 0)
+    for (std::size_t m = 0; m < of.size(); ++m) of[m] = stiffness * scale.areal_density[m];
+  PenaltyPressure result;
+  if (of.size() == 1) {
+    result.pressure = of[0];
+    return result;
+  }
+  for (std::size_t i = 0; i < step.solid.size(); ++i) result.factor.push_back(of[step.solid.materials().index(i)]);
+  return result;
 }
 
 }  // namespace
@@ -93,28 +95,20 @@ Obstacles::Obstacles(const Scene& scene) {
     shapes_.push_back(
         std::make_shared<RigidShape>(mesh.triangles.empty() ? RigidShape::half_space(o.normal) : RigidShape(mesh)));
   }
-  if (scene.ground && scene.self_contact)
-    shapes_.push_back(std::make_shared<RigidShape>(RigidShape::half_space(scene.ground_normal)));
-}
-
-const SurfaceWeights& Obstacles::weights_of(const ObjectContactStep& step) {
-  if (step.weights) return *step.weights;
-  if (!own_weights_) own_weights_.emplace().rebuild(step.body, step.solid);
-  return *own_weights_;
+  if (scene.ground) shapes_.push_back(std::make_shared<RigidShape>(RigidShape::half_space(scene.ground_normal)));
 }
 
 void Obstacles::add_potentials(const ObjectContactStep& step, Environment& environment) {
   const Scene& scene = step.scene;
   const double dt = step.dt;
   obstacles_.clear();
-  const bool between_bodies = scene.bodies.size() > 1 && scene.body_contact && !scene.self_contact;
-  if (shapes_.empty() && !between_bodies) return;
+  if (shapes_.empty()) return;
   const ContactScale scale = scale_of(step, environment.gravity);
   for (std::size_t k = 0; k < shapes_.size(); ++k) {
     const bool ground = k == scene.obstacles.size();
-    ObstaclePenaltyOptions options{ground ? scene.ground_stiffness : scene.obstacles[k].stiffness,
-                                   ground ? scene.friction : scene.obstacles[k].friction};
-    options.pressure *= scale.areal_density;
+    const PenaltyPressure penalty =
+        pressure_of(ground ? scene.ground_stiffness : scene.obstacles[k].stiffness, scale, step);
+    const ObstaclePenaltyOptions options{penalty.pressure, ground ? scene.friction : scene.obstacles[k].friction};
     Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
     if (ground)
       from.translation() = to.translation() = scene.ground_point;
@@ -125,22 +119,12 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
     // Twice the way of nodes at their present speed, since forces of the step may accelerate them.
     const double reach = 2 * dt * (scale.fastest + scale.fall) + moved + scale.spacing;
     obstacles_.emplace_back(shapes_[k], options, from, to);
-    if (const auto near = near_nodes(*shapes_[k], from.inverse(), step.body.nodes, step.motion.displacement, reach);
-        std::find(near.begin(), near.end(), 1) != near.end())
-      obstacles_.back().find_contacts(
-          step.body, weights_of(step), {step.motion.displacement, step.surface, near}, reach,
-          relative_slip * std::max(dt * scale.fall, moved) + least_slip * scale.spacing, scale.pressure_factor);
+    obstacles_.back().find_contacts(step.weights, step.surface, reach,
+                                    relative_slip * std::max(dt * scale.fall, moved) + least_slip * scale.spacing,
+                                    penalty.factor);
   }
-  if (scene.ground && scene.self_contact) environment.ground = false;
   for (ObstaclePenalty& o : obstacles_)
     if (!o.empty()) environment.contact.push_back(&o);
-  if (!between_bodies || !bodies_may_meet(step, scale.fall)) return;
-  const double reach = 4 * dt * (scale.fastest + scale.fall) + scale.spacing;  // both bodies move
-  body_contact_ =
-      find_body_contacts({step.body, step.solid, weights_of(step), step.body_index, step.motion.displacement},
-                         {scene.contact_stiffness * scale.areal_density, scene.contact.friction, reach,
-                          relative_slip * dt * scale.fall + least_slip * scale.spacing, scale.pressure_factor});
-  if (!body_contact_->empty()) environment.contact.push_back(&*body_contact_);
 }
 
 void Obstacles::add_reactions(const State& motion, double share, FrameStats& stats) const {

@@ -1,13 +1,10 @@
-// Contact of objects in the time loop: rigid obstacles, the ground as one of them, and bodies of
-// the scene with each other (§ 3.3).
+// Contact with rigid objects in the time loop: obstacles, and the ground as one of them (§ 3.3).
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "contact/response/body_contact_penalty.h"
 #include "contact/response/obstacle_penalty.h"
 #include "kerf/scene.h"
 #include "kerf/simulation.h"
@@ -19,9 +16,8 @@ struct ObjectContactStep {
   const Scene& scene;
   const Body& body;
   const Solid& solid;
-  const SurfaceWeights* weights;                 ///< of the surface; null: Obstacles computes its own
-  std::span<const Vec3> surface;                 ///< per surface vertex, world; empty: found from the nodes
-  const std::vector<std::uint32_t>& body_index;  ///< per node, its body of the scene
+  const SurfaceWeights& weights;  ///< of the surface
+  std::span<const Vec3> surface;  ///< per surface vertex, world: its target
   const State& motion;
   double time, dt;  ///< s
 };
@@ -29,25 +25,19 @@ struct ObjectContactStep {
 /// Owns the potentials of objects in contact.
 class Obstacles {
  public:
-  /// The scene's obstacles; with self-contact the ground, too, which then acts on surfaces.
+  /// The scene's obstacles and its ground, the half-space below a plane.
   explicit Obstacles(const Scene& scene);
-  /// Whether there is an obstacle.
+  /// Whether there is an obstacle or a ground.
   bool any() const { return !shapes_.empty(); }
 
-  /// Adds the potentials of a time step to `environment`; valid until the next call. Bodies of the
-  /// scene repel each other only without self-contact, which includes that.
+  /// Adds the potentials of a time step to `environment`; valid until the next call.
   void add_potentials(const ObjectContactStep& step, Environment& environment);
-  /// The surface has changed by a crack step.
-  void invalidate_weights() { own_weights_.reset(); }
   /// Adds to `stats`, after a time step, `share` of the mean forces and torques on the obstacles.
   void add_reactions(const State& motion, double share, FrameStats& stats) const;
 
  private:
-  const SurfaceWeights& weights_of(const ObjectContactStep& step);
   std::vector<std::shared_ptr<const RigidShape>> shapes_;  // of the scene's obstacles, then of the ground
   std::vector<ObstaclePenalty> obstacles_;                 // of the current step, one for each shape
-  std::optional<BodyContactPenalty> body_contact_;         // of the current step
-  std::optional<SurfaceWeights> own_weights_;
 };
 
 }  // namespace geo

@@ -67,7 +67,7 @@ double PullPotential::energy(std::size_t k, const Vec3& d) const {
   return penalty_energy(springs_[k].stiffness, springs_[k].stretch(d).squaredNorm());
 }
 
-Potential::Derivatives PullPotential::derivatives(std::size_t k, const Vec3& d) {
+Potential::Derivatives PullPotential::derivatives(std::size_t k, const Vec3& d) const {
   const Spring& s = springs_[k];
   return {-s.stiffness * s.stretch(d), s.stiffness * Mat3::Identity()};
 }

@@ -37,7 +37,7 @@ class PullPotential : public Potential {
   /// ½ k |stretch|², J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of the spring.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override;
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override;
   /// The spring's stiffness, N/m.
   double stiffness_bound(std::size_t k) const override { return springs_[k].stiffness; }
   /// The spring's impulse.

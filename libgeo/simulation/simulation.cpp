@@ -154,6 +154,7 @@ struct Simulation::Impl {
   std::mutex points_guard;  // held by update_points()
   std::size_t crumbs = 0;
   bool cut_since_build = false;  // of the solid
+  bool nodes_changed = false;    // since reset_environment()
 };
 
 Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
@@ -198,19 +199,10 @@ void Simulation::Impl::reset_contact() {
 
 // All that acts on the nodes as they are now, except contact.
 void Simulation::Impl::reset_environment() {
-  const std::size_t n = body.nodes.size();
+  nodes_changed = false;
   environment.gravity = scene.gravity;
-  environment.ground = scene.ground;
-  environment.ground_point = scene.ground_point;
-  environment.ground_normal = scene.ground_normal.normalized();
-  environment.ground_stiffness = scene.ground_stiffness;
-  environment.friction = scene.friction;
-  environment.fixed.assign(n, 0);
-  environment.clearance.assign(n, 0);
+  environment.fixed.assign(body.nodes.size(), 0);
   gripped = GrippedNodes(scene.grips, body.nodes);
-  for (std::size_t i = 0; i < n; ++i)
-    if (const auto v = body.binding.closest[i]; v.valid() && body.surface.alive(v))
-      environment.clearance[i] = (body.surface.point(body.surface.site(v)) - body.nodes.position[i]).norm();
 }
 
 // In the boxes of the grips at a time. Precondition: the solid's points are up to date.
@@ -222,17 +214,14 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<Embeddi
   if (delta.crack.empty()) return;
   Stopwatch watch;
   cut_since_build = true;
-  parallel_invoke([&] { reset_environment(); },
-                  [&] {
-                    solid.update_nodes(body, delta, state.motion);
-                    if (scene.fracture.on) update_points();
-                  });
+  nodes_changed = true;
+  solid.update_nodes(body, delta, state.motion);
+  if (scene.fracture.on) update_points();
   for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
   way.add_nodes(delta.donors);
   if (!delta.detached.empty()) crumbs = count_crumbs(body);
   stats.mechanics_seconds += watch.lap();
   if (collisions) collisions->commit(std::move(plan), body, delta);
-  obstacles.invalidate_weights();
   pull.invalidate();
   stats.contact_seconds += watch.lap();
 }
@@ -439,27 +428,28 @@ std::int32_t Simulation::Impl::unused_crack() const {
 // step.
 void Simulation::Impl::add_wedges() {
   wedge = {};
-  std::vector<double> mass;
+  const BladeNodes nodes{body.nodes.position, state.motion.displacement, body.nodes.radius,
+                         [&](std::size_t i) { return surface_distance(body, NodeId(i)); },
+                         [&](std::size_t i) { return solid.mass(NodeId(i)); }};
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     const Blade& blade = scene.blades[b];
     if (!(blade.thickness > 0) || !blade.active(state.time)) continue;
-    for (std::size_t i = mass.size(); i < body.nodes.size(); ++i) mass.push_back(solid.mass(NodeId(i)));
     const Pose pose = blade.motion.at(state.time);
     wedge.add(b, {blade.at(state.time), blade.closed, pose.rotation * blade.back, blade.thickness, blade.stiffness},
-              {body.nodes.position, state.motion.displacement, environment.clearance, mass});
+              nodes);
   }
   if (!wedge.empty()) environment.contact.push_back(&wedge);
 }
 
-// Adds obstacles, contact between bodies, and self-contact. The result owns the potential of
-// self-contact.
+// Adds obstacles and self-contact. The result owns the potential of self-contact.
 std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats& stats) {
   Stopwatch watch;
-  collisions->update_weights(body, solid);
-  const std::span<const Vec3> surface = obstacles.any() ? collisions->targets(state.motion) : std::span<const Vec3>();
-  obstacles.add_potentials(
-      {scene, body, solid, collisions->weights(), surface, state.body_index, state.motion, state.time, dt},
-      environment);
+  if (obstacles.any()) {
+    collisions->update_weights(body, solid);
+    obstacles.add_potentials(
+        {scene, body, solid, collisions->weights(), collisions->targets(state.motion), state.motion, state.time, dt},
+        environment);
+  }
   std::optional<ContactStep> contact = collisions->begin_step(body, solid, state.motion, dt, environment);
   stats.contact_seconds += watch.lap();
   return contact;
@@ -511,6 +501,7 @@ void Simulation::Impl::fracture(double dt, FrameStats& stats) {
 void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   state.time = step.begin;
   apply_changes(step.begin);
+  if (nodes_changed) reset_environment();
   const std::vector<Vec3> before = state.motion.displacement;
   gripped.place(scene.grips, body.nodes, step.end, environment.fixed, state.motion);
   environment.contact.clear();

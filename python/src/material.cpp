@@ -61,7 +61,7 @@ constexpr const char* material_doc =
     "Parameters of a hyperelastic material; model units are metres. It never changes: see replace().\n\n"
     "Material(*, model='neo-hookean' or 'stvk', young=1e5 (Pa), poisson=0.3, density=1000 (kg/m3), volume_term=0 "
     "(Pa),\n"
-    "damping=0.5 (1/s), viscosity=0 (Pa s), discretisation='galerkin' or 'mueller04', mode_penalty=0.05, yield_=0\n"
+    "damping=0 (1/s), viscosity=0 (Pa s), discretisation='galerkin' or 'mueller04', mode_penalty=0.05, yield_=0\n"
     "(elastic strain above which it flows; 0: never), creep=1 (1/s), max_plastic=1). Raises InputError for impossible\n"
     "values, TypeError for unknown names.";
 

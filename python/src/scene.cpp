@@ -205,8 +205,8 @@ void add_fields(Class& scene) {
   field(scene, "ground", &geo::Scene::ground, "Whether there is a ground plane.");
   field(scene, "ground_point", &geo::Scene::ground_point, "A point of the ground, (3,).");
   field(scene, "ground_normal", &geo::Scene::ground_normal, "Normal of the ground, (3,).");
-  field(scene, "ground_stiffness", &geo::Scene::ground_stiffness, "Acceleration per depth, 1/s2.");
-  field(scene, "friction", &geo::Scene::friction, "Friction of the ground.");
+  field(scene, "ground_stiffness", &geo::Scene::ground_stiffness, "Acceleration per depth, 1/s2; 0: derived.");
+  field(scene, "friction", &geo::Scene::friction, "Coulomb's coefficient of the ground.");
   field(scene, "gravity", &geo::Scene::gravity, "Acceleration, (3,), model units per s2.");
   field(scene, "frame_rate", &geo::Scene::frame_rate, "Frames per second.");
   field(scene, "dt", &geo::Scene::dt, "Largest time step, s.");
@@ -216,10 +216,8 @@ void add_fields(Class& scene) {
   field(scene, "implicit", &geo::Scene::implicit, "Whether steps are backward Euler; else leapfrog.");
   field(scene, "seed", &geo::Scene::seed, "Seed of sampling and jitter.");
   field(scene, "fracture", &geo::Scene::fracture, "Fracture by stress, FractureOptions.");
-  field(scene, "self_contact", &geo::Scene::self_contact, "Whether the surface is kept from crossing itself.");
+  field(scene, "self_contact", &geo::Scene::self_contact, "Whether bodies touch each other and themselves.");
   field(scene, "contact", &geo::Scene::contact, "Parameters of self-contact, ContactOptions.");
-  field(scene, "body_contact", &geo::Scene::body_contact, "Penalty between bodies, without self_contact.");
-  field(scene, "contact_stiffness", &geo::Scene::contact_stiffness, "Of that penalty, 1/s2.");
   field(scene, "fingerprint", &geo::Scene::fingerprint, "Hash of all that decides what a run computes.");
 }
 

@@ -70,7 +70,7 @@ void require_environment(const DeformingSolid& self, const geo::Environment& e) 
       throw geo::InputError(std::string("environment: ") + name + " has " + std::to_string(size) +
                             " values, the solid " + std::to_string(n) + " nodes");
   };
-  require("clearance", e.clearance.size()), require("fixed", e.fixed.size()), require("load", e.load.size());
+  require("fixed", e.fixed.size()), require("load", e.load.size());
 }
 
 geo::StepReport step(DeformingSolid& self, State& state, double dt, const geo::Environment& environment,

@@ -50,13 +50,11 @@ geo::Environment environment_from(const py::kwargs& given) {
     const auto value = k.object(name);
     if (!value.is_none()) out = point_from(value, name);
   };
-  vector("gravity", e.gravity), vector("ground_point", e.ground_point), vector("ground_normal", e.ground_normal);
-  if (!(e.ground_normal.norm() > 0)) throw geo::InputError("ground_normal: has no direction");
-  e.ground_normal.normalize();
-  k.flag("ground", e.ground);
-  k.take("ground_stiffness", e.ground_stiffness, 0), k.take("friction", e.friction, 0, 1);
-  const auto clearance = k.object("clearance"), fixed = k.object("fixed"), load = k.object("load");
-  if (!clearance.is_none()) e.clearance = numbers_from(clearance, "clearance");
+  vector("gravity", e.gravity);
+  for (const char* gone : {"ground", "ground_point", "ground_normal", "ground_stiffness", "friction", "clearance"})
+    if (!k.object(gone).is_none())
+      throw geo::InputError(std::string(gone) + ": an Environment has no ground; give the [ground] of a Scene");
+  const auto fixed = k.object("fixed"), load = k.object("load");
   if (!load.is_none()) e.load = points_from(load, "load");
   if (!fixed.is_none()) {
     auto array = py::array::ensure(fixed);
@@ -71,10 +69,8 @@ geo::Environment environment_from(const py::kwargs& given) {
 
 constexpr const char* environment_doc =
     "External actions on the nodes during a time step. It never changes.\n\n"
-    "Environment(*, gravity=(0, 0, -9.81), ground=False, ground_point, ground_normal, ground_stiffness=1e4 "
-    "(acceleration\n"
-    "per depth, 1/s2), friction=0.5, clearance: (n,) distance of each node to the skin below it, fixed: (n,) truth\n"
-    "values, True clamps a node, load: (n, 3) forces, N). Raises InputError.";
+    "Environment(*, gravity=(0, 0, -9.81), fixed: (n,) truth values, True clamps a node, load: (n, 3) forces, N).\n"
+    "Contact needs a surface: the ground and obstacles are those of a Scene. Raises InputError.";
 
 }  // namespace
 
@@ -119,17 +115,7 @@ void bind_state(py::module_& module) {
   py::class_<geo::Environment>(module, "Environment", environment_doc)
       .def(py::init(&environment_from), "See the class.")
       .def_property_readonly(
-          "gravity", [](const geo::Environment& e) { return point(e.gravity); }, "Acceleration, (3,), m/s2.")
-      .def_readonly("ground", &geo::Environment::ground, "Whether there is a ground plane.")
-      .def_property_readonly(
-          "ground_point", [](const geo::Environment& e) { return point(e.ground_point); },
-          "A point of the ground, (3,).")
-      .def_property_readonly(
-          "ground_normal", [](const geo::Environment& e) { return point(e.ground_normal); },
-          "Unit normal out of the ground, (3,).")
-      .def_readonly("ground_stiffness", &geo::Environment::ground_stiffness, "Acceleration per depth, 1/s2.")
-      .def_readonly("friction", &geo::Environment::friction,
-                    "Share of its tangential velocity that a touching node loses in 0.01 s.");
+          "gravity", [](const geo::Environment& e) { return point(e.gravity); }, "Acceleration, (3,), m/s2.");
 }
 
 }  // namespace kerf_python

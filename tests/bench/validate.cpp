@@ -11,7 +11,7 @@ int validate(const Options&) {
   std::printf("| case | formula | measured | expected | error | bound |\n|---|---|---|---|---|---|\n");
   bool good = true;
   for (const auto& run : {rigid_motion, patch, tension, cantilever, frequency, free_fall, spin, slit_bar, notched_bar,
-                          hertz, brazilian_disk, energy_at_cuts})
+                          hertz, brazilian_disk, energy_at_cuts, standing, sliding, stacking})
     for (const Finding& f : run(1)) {
       const std::string error = f.absolute ? "" : std::to_string(100 * f.error()).substr(0, 4) + " %";
       const std::string bound = f.absolute ? std::to_string(f.bound) : std::to_string(int(100 * f.bound + 0.5)) + " %";

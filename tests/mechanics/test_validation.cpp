@@ -38,3 +38,6 @@ TEST_CASE("validation: Hertz, converging") {
 }
 TEST_CASE("validation: Brazilian disk") { check(validation::brazilian_disk(0), 2); }
 TEST_CASE("validation: elastic energy at single cuts") { check(validation::energy_at_cuts(0), 3); }
+TEST_CASE("validation: a cube stands at zero, whatever its triangles") { check(validation::standing(0), 12); }
+TEST_CASE("validation: friction sticks and slides by Coulomb's coefficient") { check(validation::sliding(0), 8); }
+TEST_CASE("validation: a stack of cubes stands") { check(validation::stacking(0), 3); }

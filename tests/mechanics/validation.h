@@ -28,5 +28,8 @@ std::vector<Finding> notched_bar(int size);
 std::vector<Finding> hertz(int size);
 std::vector<Finding> brazilian_disk(int size);
 std::vector<Finding> energy_at_cuts(int size);
+std::vector<Finding> standing(int size);
+std::vector<Finding> sliding(int size);
+std::vector<Finding> stacking(int size);
 
 }  // namespace validation

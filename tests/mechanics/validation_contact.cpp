@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "contact/response/obstacle_penalty.h"
+#include "contact/surface/surface_targets.h"
 #include "mechanics/bodies.h"
 #include "mechanics/disk.h"
 #include "mechanics/validation.h"
@@ -45,14 +46,13 @@ class Press {
                             high = pose({middle.x(), middle.y(), box_.hi.z() - depth}, -Vec3::UnitZ());
     ObstaclePenalty below(shape, {pressure_, 0}, low, low), above(shape, {pressure_, 0}, high, high);
     environment_.contact = {&below, &above};
-    const std::vector<std::uint8_t> all(solid.size(), 1);
     // Nothing but inertia holds it from turning: steps no longer than that bounds this well, each
     // from rest.
     for (int k = 0; k < 3; ++k) {
       for (Vec3& v : state.velocity) v.setZero();
       state.acceleration.clear();
       for (ObstaclePenalty* o : {&below, &above})
-        o->find_contacts(body, weights_, {state.displacement, {}, all}, 0.2 * box_.diagonal(), 1);
+        o->find_contacts(weights_, surface_targets(weights_, state.displacement), 0.2 * box_.diagonal(), 1);
       solid.step_implicit(state, 1, environment_, 1e-5);
     }
     return 0.5 * (above.reaction(state.displacement).force.z() - below.reaction(state.displacement).force.z());

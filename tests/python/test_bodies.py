@@ -346,6 +346,8 @@ class Solids(unittest.TestCase):
         state = deforming.rest()
         state.displacement = u
         empty = kerf.Environment(gravity=(0, 0, 0))
+        with self.assertRaisesRegex(kerf.InputError, "ground: an Environment has no ground"):
+            kerf.Environment(ground=True)
         velocity = state.velocity
         for _ in range(3):
             self.assertGreater(deforming.step_explicit(state, 1e-3, empty).substeps, 0)

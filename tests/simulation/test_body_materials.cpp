@@ -138,30 +138,24 @@ TEST_CASE("a heavy body among light ones does not sink into an obstacle") {
   }
 }
 
-TEST_CASE(
-    "surfaces of a hard and a soft body that meet do not cross, nor do they with a penalty between bodies go far") {
-  for (const bool self : {true, false}) {
-    const Scene scene =
-        parse_scene(std::string("[material]\nyoung = 2e4\ndamping = 4\n[[body]]\nmesh = 'a'\nspacing = 0.25\nfixed = "
-                                "[[-1, -1, -1, 3, 3, 0.2]]\n[[body]]\nmesh = 'b'\nspacing = 0.25\n"
-                                "scale = 0.5\nposition = [0.23, 0.27, 1.02]\n[body.material]\nyoung = 1e7\ndensity = "
-                                "600\n[contact]\nself = ") +
-                        (self ? "true" : "false") + "\n[time]\nframe_rate = 20\nstep = 0.025\n",
-                    "s.toml");
-    Simulation sim(scene, cubes(scene));
-    FrameStats work;
-    for (int frame = 0; frame < 8; ++frame) work += sim.advance_frame();
-    // It stands on the other one, dents it, and keeps its own shape.
-    double low = 0, high = 0, middle = 0, count = 0;
-    for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
-      const Vec3& u = sim.state().motion.displacement[i];
-      if (sim.state().body_index[i] == 0) continue;
-      low = std::min(low, u.z()), high = std::max(high, u.z()), middle += u.z(), ++count;
-    }
-    INFO("self " << self << ": " << middle / count);
-    CHECK(middle / count < -0.02);
-    CHECK(middle / count > -0.3);
-  }
+TEST_CASE("surfaces of a hard and a soft body that meet do not go far") {
+  const Scene scene = parse_scene(
+      "[material]\nyoung = 2e4\ndamping = 4\n[[body]]\nmesh = 'a'\nspacing = 0.25\nfixed = "
+      "[[-1, -1, -1, 3, 3, 0.2]]\n[[body]]\nmesh = 'b'\nspacing = 0.25\n"
+      "scale = 0.5\nposition = [0.23, 0.27, 1.02]\n[body.material]\nyoung = 1e7\ndensity = "
+      "600\n[time]\nframe_rate = 20\nstep = 0.025\n",
+      "s.toml");
+  Simulation sim(scene, cubes(scene));
+  FrameStats work;
+  for (int frame = 0; frame < 8; ++frame) work += sim.advance_frame();
+  // It stands on the other one, dents it, and keeps its own shape.
+  double middle = 0, count = 0;
+  for (std::size_t i = 0; i < sim.body().nodes.size(); ++i)
+    if (sim.state().body_index[i] != 0) middle += sim.state().motion.displacement[i].z(), ++count;
+  INFO(middle / count);
+  CHECK(middle / count < -0.02);
+  CHECK(middle / count > -0.3);
+  CHECK(work.contact.touching > 0);
 }
 
 TEST_CASE("bodies pulled alike break where their own strength says", "[fracture]") {

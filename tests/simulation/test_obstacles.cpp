@@ -44,9 +44,10 @@ TEST_CASE("a block on an inclined obstacle stays below the angle of friction, an
   for (const char* integrator : {"implicit", "leapfrog"})
     for (const double degrees : {15.0, 40.0}) {
       INFO(integrator << ", " << degrees << " degrees");
+      const double damping = integrator[0] == 'i' ? 0 : 3;  // leapfrog has none of its own: the block would hop
       const std::string turn = "[0, 1, 0, " + std::to_string(degrees) + "]";
-      Scene scene = scene_of("rotation = " + turn +
-                                 "\n[material]\nyoung = 1e5\ndamping = 3\n[time]\nframes = 10\nframe_rate = 20\nstep = "
+      Scene scene = scene_of("rotation = " + turn + "\n[material]\nyoung = 1e5\ndamping = " + std::to_string(damping) +
+                                 "\n[time]\nframes = 10\nframe_rate = 20\nstep = "
                                  "0.01\nintegrator = '" +
                                  std::string(integrator) +
                                  "'\n[[obstacle]]\nnormal = [0, 0, 1]\nposition = [0, 0, 0]\nrotation = " + turn +
@@ -61,8 +62,9 @@ TEST_CASE("a block on an inclined obstacle stays below the angle of friction, an
       const Middle begin = middle_of(sim);
       for (int i = 0; i < 8; ++i) sim.advance_frame();
       const Middle end = middle_of(sim);
-      const double fade = std::exp(-3 * 0.4);  // damping: v' = a − 3 v
-      const double gained = 3 * down.dot(end.velocity - fade * begin.velocity) / (1 - fade);
+      // v' = a − damping v
+      const double fade = std::exp(-damping * 0.4), share = damping > 0 ? (1 - fade) / damping : 0.4;
+      const double gained = down.dot(end.velocity - fade * begin.velocity) / share;
       if (degrees < 20) {
         CHECK(std::abs(down.dot(end.place - begin.place)) < 0.002);
       } else {

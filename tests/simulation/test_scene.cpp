@@ -3,6 +3,8 @@
 #include <numbers>
 
 #include "base/random.h"
+#include "kerf/error.h"
+#include "kerf/files.h"
 #include "kerf/scene.h"
 #include "simulation/edge_front.h"
 #include "simulation/grips.h"
@@ -134,4 +136,27 @@ TEST_CASE("edge fronts are refined, collapsed, split and joined by their paramet
   const EdgeFront both = joined(low, high);
   CHECK(both.at == std::vector<double>{0, 1, 1, 2});
   CHECK(both.front.segments.size() == both.front.points.size() - 1);
+}
+
+TEST_CASE("keys of the former contact between bodies are read where they mean what they meant") {
+  const auto refused = [](const std::string& contact) -> std::string {
+    try {
+      parse_scene("[body]\nmesh = 'a'\n[contact]\n" + contact, "s.toml");
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  CHECK(parse_scene("[body]\nmesh = 'a'\n", "s.toml").self_contact);
+  for (const char* same : {"self = true\nbodies = false\n", "self = true\nstiffness = 1e5\n", "bodies = true\n",
+                           "stiffness = 1e4\n", "self = false\nbodies = false\nstiffness = 1e5\n"})
+    CHECK(refused(same) == "");
+  CHECK(refused("bodies = false\n") ==
+        "s.toml:4:10: for bodies that do not touch each other, write 'contact.self' = false");
+  CHECK(refused("self = false\nbodies = true\n") ==
+        "s.toml:5:10: for bodies that touch each other, write 'contact.self' = true");
+  CHECK(refused("self = false\nstiffness = 1e4\n").find("write 'contact.self' = true") != std::string::npos);
+  // The remedies are read.
+  CHECK_FALSE(parse_scene("[body]\nmesh = 'a'\n[contact]\nself = false\n", "s.toml").self_contact);
+  CHECK(parse_scene("[body]\nmesh = 'a'\n[contact]\nself = true\n", "s.toml").self_contact);
 }

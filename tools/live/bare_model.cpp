@@ -28,8 +28,7 @@ std::string scene_of(const geo::TriangleMesh& mesh, const std::string& path, int
          "\n[material]\nyoung = " + tool::number(stiffness * density * gravity * size) +
          "\ndensity = " + tool::number(density) + "\npoisson = 0.35\ndamping = 1.5\n[ground]\npoint = " + row(low) +
          "\nnormal = " + row(normal) +
-         "\nstiffness = 8e3\nfriction = 0.5\n[contact]\nself = true\nfriction = 0.1\n[time]\nstep = 0.0167\naccuracy = "
-         "0.01\n";
+         "\nfriction = 0.5\n[contact]\nfriction = 0.1\n[time]\nstep = 0.0167\naccuracy = 0.01\n";
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // A flank is the middle plane r = α along + β back, α, β ∈ [0, 1]. Faces of the wedge lean by
-// thickness / (2 |back|) against it; depth = clearance − n · (x − start of the segment).
+// thickness / (2 |back|) against it; depth = distance of the surface − n · (x − start of
+// the segment).
 #include "contact/response/blade_penalty.h"
 
 #include <cmath>
 
+#include "geometry/distance.h"
 #include "mechanics/terms/contact_law.h"
 
 namespace geo {
@@ -38,26 +40,40 @@ bool is_beside(const Flank& f, const Vec3& r, const Vec3& back, double back_squa
 
 }  // namespace
 
+double surface_distance(const Body& body, NodeId node) {
+  const SurfaceVertexId v = body.binding.closest[node.index()];
+  if (!v.valid() || !body.surface.alive(v)) return 0;
+  const Vec3& x = body.nodes.position[node.index()];
+  double distance = (body.surface.point(body.surface.site(v)) - x).norm();
+  std::vector<FaceId> faces;
+  body.surface.faces_near(Box3{x, x}.grown(distance), faces);
+  for (const FaceId f : faces) {
+    const auto c = body.surface.corners(f);
+    distance = std::min(distance, (closest_point_on_triangle(x, c[0], c[1], c[2]) - x).norm());
+  }
+  return distance;
+}
+
 void BladePenalty::add(std::size_t blade, const BladeWedge& wedge, const BladeNodes& nodes) {
   const Vec3& back = wedge.back;
   const double width = back.norm(), slope = 0.5 * wedge.thickness / width, back_squared = width * width;
   Box3 box;
   for (const Vec3& p : wedge.edge) box.add(p), box.add(p + back);
-  box = box.grown(wedge.thickness + *std::max_element(nodes.clearance.begin(), nodes.clearance.end()));
   const std::vector<Flank> flanks = flanks_of(wedge);
   for (std::size_t i = 0; i < nodes.position.size(); ++i) {
     const Vec3 world = nodes.position[i] + nodes.displacement[i];
-    if (!box.meets({world, world})) continue;
+    if (!box.grown(wedge.thickness + nodes.radius[i]).meets({world, world})) continue;
+    const double surface = nodes.surface(i);
     // The nearest flank that the node is beside.
-    Contact found{{static_cast<std::uint32_t>(i), 1}, blade, Vec3::Zero(), nodes.mass[i] * wedge.stiffness, 0};
-    double least = 0.5 * wedge.thickness + nodes.clearance[i];
+    Contact found{{static_cast<std::uint32_t>(i), 1}, blade, Vec3::Zero(), nodes.mass(i) * wedge.stiffness, 0};
+    double least = 0.5 * wedge.thickness + surface;
     for (const Flank& f : flanks) {
       const Vec3 r = world - f.start;
       const double d = r.dot(f.normal);
       if (!(std::abs(d) < least) || !is_beside(f, r, back, back_squared)) continue;
       least = std::abs(d);
       found.normal = ((d < 0 ? -1.0 : 1.0) * f.normal - slope * back / width).normalized();
-      found.offset = nodes.clearance[i] - found.normal.dot(r - nodes.displacement[i]);
+      found.offset = surface - found.normal.dot(r - nodes.displacement[i]);
     }
     if (found.normal != Vec3::Zero()) contacts_.push_back(found);
   }
@@ -68,7 +84,7 @@ double BladePenalty::energy(std::size_t k, const Vec3& d) const {
   return penalty_energy(contacts_[k].stiffness, depth * depth);
 }
 
-Potential::Derivatives BladePenalty::derivatives(std::size_t k, const Vec3& d) {
+Potential::Derivatives BladePenalty::derivatives(std::size_t k, const Vec3& d) const {
   const Contact& c = contacts_[k];
   const double depth = c.depth(d);
   return {penalty_force(c.stiffness, depth, c.normal),

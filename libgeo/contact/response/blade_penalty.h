@@ -3,9 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "kerf/body.h"
 #include "kerf/vec.h"
 #include "mechanics/terms/potential.h"
 
@@ -24,13 +26,18 @@ struct BladeWedge {
 /// Nodes of a body. Refers to everything.
 struct BladeNodes {
   const std::vector<Vec3>&position, &displacement;  ///< material coordinates; displacements
-  const std::vector<double>& clearance;             ///< distance of the surface that a node is nearest to
-  const std::vector<double>& mass;                  ///< kg
+  const std::vector<double>& radius;                ///< bound of surface_distance(): support radii
+  std::function<double(std::size_t)> surface;       ///< of a node: surface_distance()
+  std::function<double(std::size_t)> mass;          ///< of a node, kg
 };
+
+/// Distance of a node from the nearest face in the material, model units; 0 where the node has no
+/// surface within its support radius. The cost does not depend on the size of the body.
+double surface_distance(const Body& body, NodeId node);
 
 /// The penalty of contact_law.h, without friction, for every node that is beside a flank when the
 /// step begins. The plane of a contact is the wedge's face on the node's side, for the whole step.
-/// Its depth is that of the node's surface, `clearance` away.
+/// Its depth is that of the surface nearest to the node.
 class BladePenalty : public Potential {
  public:
   /// Adds the contacts of a blade. `blade`: its number, for reaction().
@@ -45,7 +52,7 @@ class BladePenalty : public Potential {
   /// Energy of the penalty, J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of the penalty.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override;
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override;
   /// Force of the material on each of `blades` blades at displacements u, N.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
 

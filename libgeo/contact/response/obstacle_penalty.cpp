@@ -30,27 +30,14 @@ Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   return p;
 }
 
-void ObstaclePenalty::find_contacts(const Body& body, const SurfaceWeights& weights, const BodyPlacement& placement,
-                                    double reach, double slip_regularisation, std::span<const double> pressure_factor) {
-  const Complex& k = body.surface;
+void ObstaclePenalty::find_contacts(const SurfaceWeights& weights, std::span<const Vec3> surface, double reach,
+                                    double slip_regularisation, std::span<const double> pressure_factor) {
   slip_regularisation_ = slip_regularisation, sum_ = {}, substep_begin_ = substep_end_ = 0;
-  const auto rest = [&](std::uint32_t v) -> const Vec3& { return k.point(k.site(SurfaceVertexId(v))); };
-  std::vector<std::uint8_t> reaches(k.surface_vertex_count(), 0);
-  std::vector<Vec3> own(placement.surface.empty() ? reaches.size() : 0);  // positions found here
-  const auto position = [&](std::uint32_t v) -> const Vec3& { return own.empty() ? placement.surface[v] : own[v]; };
   const Eigen::Isometry3d to_local = from_.inverse();
+  std::vector<std::uint8_t> reaches(weights.size(), 0);
   parallel_for(reaches.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (auto v = static_cast<std::uint32_t>(begin); v < end; ++v) {
-      const Stencil carriers = weights.stencil(v);
-      if (!k.alive(SurfaceVertexId(v)) || carriers.empty()) continue;
-      if (!own.empty()) {
-        if (std::none_of(carriers.begin(), carriers.end(),
-                         [&](const NodeWeight& w) { return placement.near_nodes[w.node] != 0; }))
-          continue;
-        own[v] = rest(v) + weights.interpolate(v, placement.displacement);
-      }
-      reaches[v] = shape_->near(to_local * position(v), reach);
-    }
+    for (std::size_t v = begin; v < end; ++v)
+      reaches[v] = weights.alive(v) && !weights.stencil(v).empty() && shape_->near(to_local * surface[v], reach);
   });
   std::vector<std::uint32_t> vertices;
   for (std::uint32_t v = 0; v < reaches.size(); ++v)
@@ -62,7 +49,7 @@ void ObstaclePenalty::find_contacts(const Body& body, const SurfaceWeights& weig
       Contact& c = contacts_[i];
       c = {};
       c.weights = weights.stencil(v), c.weight_norm = weights.norm(v);
-      c.rest = rest(v), c.displacement = position(v) - c.rest;
+      c.rest = weights.rest(v) + weights.rotated(v), c.displacement = surface[v] - c.rest;
       const double factor = pressure_factor.empty() ? 1 : pressure_factor[weights.heaviest()[v]];
       c.stiffness = options_.pressure * factor * weights.area(v);
     }
@@ -82,9 +69,10 @@ void ObstaclePenalty::begin_substep(const std::vector<Vec3>& u, double from, dou
     const Vec3 local = to_local * c.start;
     const RigidShape::Field field = shape_->at(local);
     c.distance = field.distance;
-    c.normal_force = c.stiffness * std::max(0.0, -field.distance);
+    const double normal = c.stiffness * std::max(0.0, -field.distance);
+    c.friction.begin_substep(normal, normal > 0 ? NormalForce::balanced : NormalForce::estimated);
     c.normal = start.linear() * field.normal;
-    c.stuck = now_ * local, c.slip.setZero();
+    c.stuck = now_ * local;
     c.activation_distance = std::max(0.0, c.distance - (c.start - c.stuck).norm()) / c.weight_norm;
   };
   if (from > 0) return for_each_displacement(u, begin_contact);
@@ -117,14 +105,22 @@ double ObstaclePenalty::energy(std::size_t k, const Vec3& d) const {
   return f.acts() ? penalty + f.energy(slip(c, y).norm()) : penalty;
 }
 
-Potential::Derivatives ObstaclePenalty::derivatives(const Contact& c, const Vec3& d, Vec3& last_slip) const {
+Potential::Derivatives ObstaclePenalty::derivatives(std::size_t k, const Vec3& d) const {
+  const Contact& c = contacts_[k];
   const Vec3 y = c.rest + d;
   const RigidShape::Field field = penetration(c, y);
   Derivatives result{penalty_force(c.stiffness, -field.distance, field.normal),
                      penalty_hessian(c.stiffness, field.half_square_hessian)};
   if (const LaggedFriction f = friction(c); f.acts())
-    f.add(slip(c, y), c.normal * c.normal.transpose(), last_slip, result.force, result.hessian);
+    f.add(slip(c, y), c.normal * c.normal.transpose(), c.friction.last_slip, result.force, result.hessian);
   return result;
+}
+
+double ObstaclePenalty::begin_iterate(std::size_t k, const Vec3& d) {
+  Contact& c = contacts_[k];
+  const Vec3 y = c.rest + d, along = slip(c, y);
+  const double change = c.friction.begin_iterate(along, c.stiffness * std::max(0.0, -penetration(c, y).distance));
+  return options_.friction * change * friction(c).energy_over_bound(along.norm());
 }
 
 void ObstaclePenalty::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
@@ -159,8 +155,7 @@ void ObstaclePenalty::add_reaction(const std::vector<Vec3>& u, Reaction& sum) co
   const double share = substep_end_ - substep_begin_;
   std::vector<Reaction> on_body(contacts_.size());
   for_each_displacement(u, [&](std::size_t k, const Vec3& d) {
-    Vec3 unused_slip = Vec3::Zero();
-    const Vec3 f = share * derivatives(contacts_[k], d, unused_slip).force;
+    const Vec3 f = share * derivatives(k, d).force;
     on_body[k] = {f, (contacts_[k].rest + d - now_.translation()).cross(f)};
   });
   for (const Reaction& r : on_body) sum.force -= r.force, sum.torque -= r.torque;

@@ -32,22 +32,17 @@ class ObstaclePenalty : public Potential {
   ObstaclePenalty(std::shared_ptr<const RigidShape> shape, const ObstaclePenaltyOptions& options,
                   const Eigen::Isometry3d& from, const Eigen::Isometry3d& to);
 
-  /// A body when a step begins. Refers to everything.
-  struct BodyPlacement {
-    const std::vector<Vec3>& displacement;     ///< per node
-    std::span<const Vec3> surface;             ///< per surface vertex, world; empty: found from displacements
-    std::span<const std::uint8_t> near_nodes;  ///< used then: per node, whether its surface may be near
-  };
   /// Makes contacts of the vertices that may reach the obstacle in this step: those nearer than
-  /// `reach`, model units. `weights` must outlive this. `slip_regularisation`: model units.
-  /// `pressure_factor`: per node, of the pressure on the surface that it carries; empty: 1.
-  void find_contacts(const Body& body, const SurfaceWeights& weights, const BodyPlacement& placement, double reach,
+  /// `reach`, model units. `weights` must outlive this. `surface`: targets of surface vertices when
+  /// the step begins (surface_targets.h). `slip_regularisation`: model units. `pressure_factor`: of
+  /// nodes, of the pressure on the surface that each carries; empty: 1.
+  void find_contacts(const SurfaceWeights& weights, std::span<const Vec3> surface, double reach,
                      double slip_regularisation, std::span<const double> pressure_factor = {});
   /// Whether no vertex may reach the obstacle.
   bool empty() const { return contacts_.empty(); }
 
   /// Moves the obstacle to the substep's end and takes friction bounds at its beginning. The first
-  /// substep begins at the placement of find_contacts(), not at u.
+  /// substep begins at the surface of find_contacts(), not at u.
   void begin_substep(const std::vector<Vec3>& u, double from, double to) override;
   /// Number of vertices.
   std::size_t size() const override { return contacts_.size(); }
@@ -60,9 +55,9 @@ class ObstaclePenalty : public Potential {
   /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of penalty and friction.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override {
-    return derivatives(contacts_[k], d, contacts_[k].slip);
-  }
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override;
+  /// Takes the bound of friction.
+  double begin_iterate(std::size_t k, const Vec3& d) override;
   /// The stiffness of the penalty.
   double stiffness_bound(std::size_t k) const override { return contacts_[k].stiffness; }
   /// The penalty's impulse of an explicit substep; friction stops the slip velocity as far as it
@@ -81,7 +76,8 @@ class ObstaclePenalty : public Potential {
   double depth(const std::vector<Vec3>& u) const;
 
  private:
-  // A surface vertex. Positions are world coordinates.
+  // A surface vertex. Positions are world coordinates; that of rest includes what rotations of
+  // debris add.
   struct Contact {
     Stencil weights;
     Vec3 rest = Vec3::Zero(), displacement = Vec3::Zero();  // displacement: at the step's beginning
@@ -91,16 +87,16 @@ class ObstaclePenalty : public Potential {
     Vec3 start = Vec3::Zero();       // position
     double distance = 0;             // to the obstacle; negative inside
     double activation_distance = 0;  // of nodes
-    double normal_force = 0;         // N
     Vec3 normal = Vec3::Zero();
     Vec3 stuck = Vec3::Zero();  // where the vertex would be now had it stuck to the obstacle
-    Vec3 slip = Vec3::Zero();   // at the last derivatives()
+    FrictionMemory friction;
   };
-  Derivatives derivatives(const Contact& c, const Vec3& d, Vec3& last_slip) const;
   Eigen::Isometry3d pose(double share) const;
   RigidShape::Field penetration(const Contact& c, const Vec3& y) const;
   static Vec3 slip(const Contact& c, const Vec3& y);
-  LaggedFriction friction(const Contact& c) const { return {options_.friction * c.normal_force, slip_regularisation_}; }
+  LaggedFriction friction(const Contact& c) const {
+    return {options_.friction * c.friction.normal_force, slip_regularisation_};
+  }
   void add_reaction(const std::vector<Vec3>& u, Reaction& sum) const;
   template <class Use>
   void for_each_displacement(const std::vector<Vec3>& u, const Use& use) const;

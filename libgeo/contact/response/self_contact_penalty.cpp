@@ -14,7 +14,7 @@ void SelfContactPenalty::add(std::span<const Addition> contacts) {
   std::size_t entries = entries_.size();
   for (const Addition& c : contacts) {
     const std::size_t first = std::exchange(entries, entries + c.stencil->entries.size());
-    contacts_.push_back({first, entries, c.normal, c.depth, c.stiffness, 0, c.start, false});
+    contacts_.push_back({first, entries, c.normal, c.depth, c.stiffness, 0, c.start});
   }
   entries_.resize(entries);
   parallel_for(contacts.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -36,18 +36,27 @@ double SelfContactPenalty::energy(std::size_t k, const Vec3& d) const {
   return f.acts() ? penalty + f.energy((moved - along * c.normal).norm()) : penalty;
 }
 
-Potential::Derivatives SelfContactPenalty::derivatives(std::size_t k, const Vec3& d) {
-  Contact& c = contacts_[k];
+Potential::Derivatives SelfContactPenalty::derivatives(std::size_t k, const Vec3& d) const {
+  const Contact& c = contacts_[k];
   const Vec3& n = c.normal;
   const Vec3 moved = d - c.start;
   const double along = n.dot(moved), depth = std::max(0.0, c.depth - along);
   Derivatives result;
-  c.pressing = depth > 0;
-  if (c.pressing)
+  if (depth > 0)
     result.force = penalty_force(c.stiffness, depth, n), result.hessian = plane_penalty_hessian(c.stiffness, n);
   if (const LaggedFriction f = friction(c); f.acts())
-    f.add(moved - along * n, n * n.transpose(), c.slip, result.force, result.hessian);
+    f.add(moved - along * n, n * n.transpose(), c.friction.last_slip, result.force, result.hessian);
   return result;
+}
+
+double SelfContactPenalty::begin_iterate(std::size_t k, const Vec3& d) {
+  Contact& c = contacts_[k];
+  const Vec3 moved = d - c.start;
+  const double along = c.normal.dot(moved), depth = std::max(0.0, c.depth - along);
+  const Vec3 slip = moved - along * c.normal;
+  c.pressing = depth > 0;
+  const double change = c.friction.begin_iterate(slip, c.stiffness * depth);
+  return options_.friction * change * friction(c).energy_over_bound(slip.norm());
 }
 
 std::size_t SelfContactPenalty::pressing() const {

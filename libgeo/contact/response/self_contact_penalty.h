@@ -2,6 +2,7 @@
 // with Coulomb friction (§ 3.3).
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "contact/response/relative_stencil.h"
@@ -46,7 +47,7 @@ class SelfContactPenalty : public Potential {
   };
   /// Adds contacts in their order.
   void add(std::span<const Addition> contacts);
-  /// Number of contacts with a normal force at their last derivatives().
+  /// Number of contacts with a normal force at their last iterate.
   std::size_t pressing() const;
 
   /// Number of contacts.
@@ -58,14 +59,16 @@ class SelfContactPenalty : public Potential {
   /// Activation distances hold in substeps that begin where the contacts were added.
   void begin_substep(const std::vector<Vec3>&, double from, double) override {
     at_start_ = from <= 0;
-    for (Contact& c : contacts_) c.slip.setZero();
+    for (Contact& c : contacts_) c.friction.begin_substep(c.stiffness * std::max(0.0, c.depth), NormalForce::estimated);
   }
   /// Distance of a contact over the norm of its weights.
   double activation_distance(std::size_t k) const override { return at_start_ ? contacts_[k].activation_distance : 0; }
   /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of penalty and friction.
-  Derivatives derivatives(std::size_t k, const Vec3& d) override;
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override;
+  /// Takes the bound of friction, and whether the contact presses.
+  double begin_iterate(std::size_t k, const Vec3& d) override;
 
  private:
   struct Contact {
@@ -75,11 +78,11 @@ class SelfContactPenalty : public Potential {
     double stiffness;            // N/m
     double activation_distance;  // of nodes since the step's beginning, model units
     Vec3 start;                  // relative displacement at the step's beginning
-    bool pressing;               // at the last derivatives()
-    Vec3 slip = Vec3::Zero();    // the same
+    bool pressing = false;       // at the last iterate
+    FrictionMemory friction = {};
   };
   LaggedFriction friction(const Contact& c) const {
-    return {options_.friction * c.stiffness * c.depth, options_.slip_regularisation};
+    return {options_.friction * c.friction.normal_force, options_.slip_regularisation};
   }
 
   SelfContactPenaltyOptions options_;

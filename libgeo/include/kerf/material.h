@@ -30,7 +30,7 @@ struct Material {
   double poisson = 0.3;        ///< Poisson's ratio, −1 < ν < 0.5
   double density = 1000;       ///< ρ, kg/m³
   double volume_term = 0;      ///< k_v of ½ k_v (det F − 1)², Pa; keeps Saint-Venant–Kirchhoff from collapsing
-  double damping = 0.5;        ///< mass-proportional damping, 1/s
+  double damping = 0;          ///< mass-proportional damping, 1/s: a drag, on rigid motion, too
   double viscosity = 0;        ///< η of ½ η |Ė|², E the Green strain, Pa·s: resists deformation, not rigid motion
   double mode_penalty = 0.05;  ///< mueller04 only: α of the penalty on zero-energy modes of nodal strains
   double yield = 0;            ///< norm of the elastic strain above which material flows; 0: never

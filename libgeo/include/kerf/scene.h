@@ -151,7 +151,7 @@ struct SceneObstacle {
   double scale = 1;             ///< of the mesh, applied before the pose
   Pose place;                   ///< at rest
   Motion motion;                ///< applied to the placed obstacle; no keys: at rest
-  double stiffness = 1e5;       ///< penalty: acceleration per depth, 1/s²
+  double stiffness = 0;         ///< penalty: acceleration per depth, 1/s²; 0: as Scene::ground_stiffness
   double friction = 0.5;        ///< Coulomb's coefficient
   std::string file = {};        ///< path that the mesh was read from; empty: from none
 
@@ -172,25 +172,28 @@ struct Scene {
   std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides
   bool ground = false;               ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
-  double ground_stiffness = 1e5;  ///< penalty: acceleration per depth, 1/s²
-  double friction = 0.5;          ///< of the ground: Coulomb's with self_contact, else as in Environment
-  Vec3 gravity = {0, 0, -9.81};   ///< model units per s²
-  double frame_rate = 24;         ///< frames per second
-  double dt = 1.0 / 96;           ///< largest time step, s
-  double accuracy = 1e-3;         ///< of displacements in an implicit step, in node spacings
-  int frames = 24;                ///< length of the run
-  int checkpoint_every = 8;       ///< frames between two checkpoints
-  std::vector<int> checkpoints;   ///< ascending: further frames with a checkpoint
-  bool implicit = true;           ///< backward Euler; else leapfrog (symplectic Euler)
-  std::uint64_t seed = 1;         ///< of sampling and of jitter
+  /// Penalty: acceleration per depth, 1/s². 0: a pressure per depth of 1000 ρ |g| + 2 E / h. Then a
+  /// body of height H stands at most H / 1000 deep, and at most as deep as half of the compression
+  /// between two nodes, h apart.
+  double ground_stiffness = 0;
+  double friction = 0.5;         ///< of the ground: Coulomb's coefficient
+  Vec3 gravity = {0, 0, -9.81};  ///< model units per s²
+  double frame_rate = 24;        ///< frames per second
+  double dt = 1.0 / 96;          ///< largest time step, s
+  double accuracy = 1e-3;        ///< of displacements in an implicit step, in node spacings
+  int frames = 24;               ///< length of the run
+  int checkpoint_every = 8;      ///< frames between two checkpoints
+  std::vector<int> checkpoints;  ///< ascending: further frames with a checkpoint
+  bool implicit = true;          ///< backward Euler; else leapfrog (symplectic Euler)
+  std::uint64_t seed = 1;        ///< of sampling and of jitter
   std::vector<Blade> blades;
   std::vector<SceneObstacle> obstacles;
   FractureOptions fracture;
-  bool self_contact = false;  ///< no two triangles of the surface cross in any frame
+  /// Bodies touch each other and themselves: no two triangles of the surface cross in any frame.
+  /// Otherwise only ground, obstacles and blades touch them.
+  bool self_contact = true;
   ContactOptions contact;
-  bool body_contact = true;        ///< penalty between bodies, where self_contact is off
-  double contact_stiffness = 1e5;  ///< of that penalty: acceleration per depth, 1/s²
-  std::uint64_t fingerprint = 0;   ///< hash of all that decides what the run computes; 0: not from a file
+  std::uint64_t fingerprint = 0;  ///< hash of all that decides what the run computes; 0: not from a file
 
   /// Number of equal time steps in a frame: the fewest that are at most `dt` long.
   int steps_per_frame() const;

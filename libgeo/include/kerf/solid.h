@@ -34,18 +34,12 @@ struct State {
                                         ///< identity for other nodes; empty: no debris yet
 };
 
-/// External actions on the nodes: gravity, loads, clamps, the ground, contact.
+/// External actions on the nodes: gravity, loads, clamps, contact.
 struct Environment {
-  Vec3 gravity = {0, 0, -9.81};        ///< acceleration, m/s²
-  bool ground = false;                 ///< whether there is a ground plane
-  Vec3 ground_point = Vec3::Zero();    ///< any point of the ground plane
-  Vec3 ground_normal = Vec3::UnitZ();  ///< unit normal of the ground plane, out of the ground
-  double ground_stiffness = 1e4;       ///< penalty per node mass: acceleration per unit of depth, 1/s²
-  double friction = 0.5;               ///< share of its tangential velocity that a touching node loses in 0.01 s
-  std::vector<double> clearance;       ///< per node: distance to the skin below it; empty: none
-  std::vector<std::uint8_t> fixed;     ///< per node: 1 clamps it; empty: no node is clamped
-  std::vector<Vec3> load;              ///< per node: a force, N; empty: none
-  std::vector<Potential*> contact;     ///< contact potentials, not owned; empty: no contact
+  Vec3 gravity = {0, 0, -9.81};     ///< acceleration, m/s²
+  std::vector<std::uint8_t> fixed;  ///< per node: 1 clamps it; empty: no node is clamped
+  std::vector<Vec3> load;           ///< per node: a force, N; empty: none
+  std::vector<Potential*> contact;  ///< contact potentials, not owned; empty: no contact
 };
 
 // ---- The solid

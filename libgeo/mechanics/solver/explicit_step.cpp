@@ -6,7 +6,7 @@
 
 #include "kerf/solid.h"
 #include "mechanics/solver/debris.h"
-#include "mechanics/solver/ground_contact.h"
+#include "mechanics/solver/fixed_nodes.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/terms/potential.h"
 
@@ -40,7 +40,6 @@ double stable_duration(const ExplicitStep& step, const std::vector<Vec3>& u) {
     limit = std::min(limit, 0.3 * finest[k] / speed);
     if (m.viscosity > 0) limit = std::min(limit, 0.1 * finest[k] * finest[k] * m.density / m.viscosity);
   }
-  if (env.ground) limit = std::min(limit, 0.3 / std::sqrt(env.ground_stiffness));
   for (Potential* p : env.contact) {
     p->begin_substep(u, 0, 1);
     if (const double firmest = p->eigenvalue_bound(step.inverse_mass); firmest > 0)
@@ -65,8 +64,8 @@ double apply_contact(const ExplicitStep& step, State& s, double h, double from, 
   return added;
 }
 
-// Velocities after h seconds under elastic forces, loads and ground. Adds to `added` a bound of the
-// energy, J, that loads and ground have brought.
+// Velocities after h seconds under elastic forces and loads. Adds to `added` a bound of the energy,
+// J, that loads have brought.
 void apply_forces(const ExplicitStep& step, const std::vector<Vec3>& force, double h, State& s, double& added) {
   const SolidDiscretisation& solid = step.solid;
   const Environment& env = step.environment;
@@ -79,15 +78,6 @@ void apply_forces(const ExplicitStep& step, const std::vector<Vec3>& force, doub
     Vec3 external = solid.mass[i] * env.gravity;
     if (!env.load.empty()) external += env.load[i];
     v += h * ((force[i] + external) / solid.mass[i] - solid.materials.of(i).damping * v);
-    if (env.ground) {
-      const double d = ground_depth(env, i, solid.position[i] + s.displacement[i]);
-      if (d > 0) {
-        const double normal = env.ground_normal.dot(v);
-        v = normal * env.ground_normal + std::max(0.0, 1 - env.friction * h / 0.01) * (v - normal * env.ground_normal);
-        v += h * env.ground_stiffness * d * env.ground_normal;
-        external += solid.mass[i] * env.ground_stiffness * d * env.ground_normal;
-      }
-    }
     added += std::abs(h * external.dot(v));
   }
 }

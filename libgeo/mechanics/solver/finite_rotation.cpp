@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "kerf/parallel.h"
-#include "mechanics/solver/ground_contact.h"
+#include "mechanics/solver/fixed_nodes.h"
 
 namespace geo {
 
@@ -80,7 +80,7 @@ void FiniteRotation::conserve_momentum(const ActiveIslands& active, const std::v
   std::vector<Freedom> freedom = freedom_;
   for (std::size_t i = 0; i < solid.size(); ++i)
     if (Freedom& f = freedom[island_of(i)]; f != Freedom::none)
-      if (!active[potential_.islands().of(i)] || potential_.is_touched(i, u)) f = Freedom::none;
+      if (!active[potential_.islands().of(i)] || potential_.is_touched(i)) f = Freedom::none;
   if (std::all_of(freedom.begin(), freedom.end(), [](Freedom f) { return f == Freedom::none; })) return;
   const auto at = [&](std::size_t i) -> Vec3 { return position(i, u); };
   const auto missing = [&](std::size_t i) -> Vec3 {

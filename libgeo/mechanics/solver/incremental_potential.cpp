@@ -1,9 +1,7 @@
-// Node i adds ½ m/Δt² |u − ũ|² − f · (u − u₀) and, on the ground at depth d, ½ m k d² and
-// ½ c |T (u − u₀)|². T projects onto the ground plane; c is the lagged friction stiffness.
+// Node i adds ½ m/Δt² |u − ũ|² − f · (u − u₀) to elasticity and contact.
 #include "mechanics/solver/incremental_potential.h"
 
-#include "mechanics/solver/ground_contact.h"
-#include "mechanics/terms/contact_law.h"
+#include "mechanics/solver/fixed_nodes.h"
 
 namespace geo {
 
@@ -23,8 +21,7 @@ IncrementalPotential::IncrementalPotential(const StepProblem& problem)
       elastic_(problem),
       target_(problem.solid.size()),
       load_(problem.solid.size()),
-      friction_stiffness_(problem.solid.size(), 0),
-      nodal_block_(problem.solid.size()) {
+      inertia_(problem.solid.size()) {
   const SolidDiscretisation& solid = problem.solid;
   const State& start = problem.start;
   const Environment& env = problem.environment;
@@ -32,35 +29,19 @@ IncrementalPotential::IncrementalPotential(const StepProblem& problem)
   std::vector<double> damping;  // per material: factor of velocities
   for (const Material& m : solid.materials.all()) damping.push_back(1 / (1 + m.damping * dt));
   for (std::size_t i = 0; i < solid.size(); ++i) {
+    inertia_[i] = solid.mass[i] / (dt * dt);
     target_[i] = start.displacement[i];
     load_[i] = solid.mass[i] * env.gravity;
     if (!env.load.empty()) load_[i] += env.load[i];
     if (!is_fixed(env, i)) target_[i] += dt * damping[solid.materials.index(i)] * start.velocity[i];
   }
-  // Environment::friction is the share of the tangential velocity lost in 0.01 s. Lagged: nodes
-  // that touch at the start of the step have it during the whole step.
-  if (env.ground)
-    for (std::size_t i = 0; i < solid.size(); ++i)
-      if (ground_depth_at(i, start.displacement) > 0)
-        friction_stiffness_[i] = solid.mass[i] * env.friction / (0.01 * dt);
-}
-
-double IncrementalPotential::ground_depth_at(std::size_t node, const std::vector<Vec3>& u) const {
-  return ground_depth(problem_.environment, node, problem_.solid.position[node] + u[node]);
 }
 
 double IncrementalPotential::nodal_energy(std::size_t node, const Vec3& u) const {
   const SolidDiscretisation& solid = problem_.solid;
-  const Environment& env = problem_.environment;
   const double dt = problem_.dt;
   const Vec3& u0 = problem_.start.displacement[node];
-  double sum = 0.5 * solid.mass[node] / (dt * dt) * (u - target_[node]).squaredNorm() - load_[node].dot(u - u0);
-  if (!env.ground) return sum;
-  const double d = ground_depth(env, node, solid.position[node] + u);
-  if (d > 0) sum += penalty_work(solid.mass[node] * env.ground_stiffness * d, d);
-  if (friction_stiffness_[node] > 0)
-    sum += 0.5 * friction_stiffness_[node] * ground_tangential(env, u - u0).squaredNorm();
-  return sum;
+  return 0.5 * solid.mass[node] / (dt * dt) * (u - target_[node]).squaredNorm() - load_[node].dot(u - u0);
 }
 
 void IncrementalPotential::evaluate(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& value,
@@ -85,27 +66,7 @@ void IncrementalPotential::force(const ActiveIslands& active, const std::vector<
     f = response.force[i];
     f += contact_.force_at(i);
     f += load_[i] - solid.mass[i] / (dt * dt) * (u[i] - target_[i]);
-    if (env.ground) {
-      const double d = ground_depth_at(i, u);
-      if (d > 0) f += penalty_force(solid.mass[i] * env.ground_stiffness, d, env.ground_normal);
-      if (friction_stiffness_[i] > 0)
-        f -= friction_stiffness_[i] * ground_tangential(env, u[i] - problem_.start.displacement[i]);
-    }
     if (is_fixed(env, i)) f.setZero();
-  });
-}
-
-void IncrementalPotential::update_nodal_blocks(const ActiveIslands& active, const std::vector<Vec3>& u) {
-  const SolidDiscretisation& solid = problem_.solid;
-  const Environment& env = problem_.environment;
-  const double dt = problem_.dt;
-  active.each_node([&](std::size_t i) {
-    nodal_block_[i] = solid.mass[i] / (dt * dt) * Mat3::Identity();
-    if (env.ground) {
-      const Mat3 nn = env.ground_normal * env.ground_normal.transpose();
-      if (ground_depth_at(i, u) > 0) nodal_block_[i] += penalty_hessian(solid.mass[i] * env.ground_stiffness, nn);
-      if (friction_stiffness_[i] > 0) nodal_block_[i] += friction_stiffness_[i] * (Mat3::Identity() - nn);
-    }
   });
 }
 
@@ -115,7 +76,7 @@ void IncrementalPotential::multiply(const ActiveIslands& active, const std::vect
   elastic_.multiply(active, p);
   contact_.multiply_hessian(p);
   const auto product_at = [&](std::size_t i) -> Vec3 {
-    return elastic_.product_at(i) + nodal_block_[i] * p[i] + contact_.hessian_product_at(i);
+    return elastic_.product_at(i) + inertia_[i] * p[i] + contact_.hessian_product_at(i);
   };
   if (solid.penalty) {
     active.each_node([&](std::size_t i) { out[i] = product_at(i); });
@@ -131,14 +92,10 @@ void IncrementalPotential::multiply(const ActiveIslands& active, const std::vect
 }
 
 std::vector<Mat3> IncrementalPotential::nodal_blocks_with_contact() const {
-  std::vector<Mat3> blocks = nodal_block_;
+  std::vector<Mat3> blocks(inertia_.size());
+  for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = inertia_[i] * Mat3::Identity();
   contact_.add_diagonal_blocks(blocks);
   return blocks;
-}
-
-bool IncrementalPotential::is_touched(std::size_t node, const std::vector<Vec3>& u) const {
-  const bool on_ground = problem_.environment.ground && (friction_stiffness_[node] > 0 || ground_depth_at(node, u) > 0);
-  return on_ground || contact_.acts_on(node);
 }
 
 }  // namespace geo

@@ -1,6 +1,6 @@
 // The incremental potential of a backward Euler step (Kane et al. 2000, Li et al. 2020): its
-// minimiser is the displacement after the step. Inertia, loads, elasticity, ground and contact;
-// value, gradient, Hessian–vector product.
+// minimiser is the displacement after the step. Inertia, loads, elasticity and contact; value,
+// gradient, Hessian–vector product.
 #pragma once
 
 #include <utility>
@@ -13,9 +13,9 @@
 
 namespace geo {
 
-/// E(u) = Σ ½ m/Δt² |u − ũ|² − f · (u − u₀) + Ψ(u) + ground + contact, with the inertial target ũ =
-/// u₀ + Δt v₀ (less damping) and loads f. Fixed nodes have ũ = u₀ and no gradient. Values are per
-/// island.
+/// E(u) = Σ ½ m/Δt² |u − ũ|² − f · (u − u₀) + Ψ(u) + contact, with the inertial target ũ = u₀ +
+/// Δt v₀ (less damping) and loads f. Fixed nodes have ũ = u₀ and no gradient. Values are those of
+/// islands.
 class IncrementalPotential {
  public:
   /// Refers to the problem and what it refers to.
@@ -25,6 +25,8 @@ class IncrementalPotential {
   const Islands& islands() const { return islands_; }
   /// The step itself.
   const StepProblem& problem() const { return problem_; }
+  /// The contact of the step.
+  const PotentialSum& contact() const { return contact_; }
   /// ũ per node: where inertia alone takes it.
   const std::vector<Vec3>& inertial_target() const { return target_; }
   /// Gravity and load per node, N.
@@ -34,6 +36,11 @@ class IncrementalPotential {
   /// where given, receives the elastic response that force() and linearise() need.
   void evaluate(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& value,
                 ElasticResponse* response = nullptr);
+  /// Begins a Newton iterate where the active islands were at their last evaluate(). From the
+  /// second one on, takes the bounds of friction there, and adds what this changes of E to `value`.
+  void begin_iterate(const ActiveIslands& active, std::vector<double>& value) {
+    contact_.begin_iterate(islands_.of_nodes(), active.mask(), value);
+  }
   /// force = −∂E/∂u, N, at the nodes of active islands. Precondition: their last evaluate() was at
   /// u, with `response`.
   void force(const ActiveIslands& active, const std::vector<Vec3>& u, const ElasticResponse& response,
@@ -42,11 +49,8 @@ class IncrementalPotential {
   /// Recomputes the elastic part of the Hessian for the active islands from a response of
   /// evaluate().
   void linearise(const ActiveIslands& active, const ElasticResponse& response) { elastic_.linearise(active, response); }
-  /// Recomputes the part of the Hessian that couples no nodes (inertia, ground) at u for the active
-  /// islands.
-  void update_nodal_blocks(const ActiveIslands& active, const std::vector<Vec3>& u);
   /// out = H p, N, and curvature[island] = p · H p, J, for the active islands, with the Hessian of
-  /// the last linearise() and update_nodal_blocks() and of contact at the last force().
+  /// the last linearise() and of contact at the last force().
   void multiply(const ActiveIslands& active, const std::vector<Vec3>& p, std::vector<Vec3>& out,
                 std::vector<double>& curvature);
 
@@ -54,12 +58,11 @@ class IncrementalPotential {
   const PointStiffness& point_stiffness() const { return elastic_.stiffness(); }
   /// 3×3 blocks per node, N/m: all of the Hessian but elasticity, contact by its block diagonal.
   std::vector<Mat3> nodal_blocks_with_contact() const;
-  /// Whether ground or contact acts on a node at u, or has done so in this step.
-  bool is_touched(std::size_t node, const std::vector<Vec3>& u) const;
+  /// Whether contact acts on a node, or has done so in this step.
+  bool is_touched(std::size_t node) const { return contact_.acts_on(node); }
 
  private:
   std::vector<std::pair<std::uint32_t, std::uint32_t>> coupled_components() const;
-  double ground_depth_at(std::size_t node, const std::vector<Vec3>& u) const;
   double nodal_energy(std::size_t node, const Vec3& u) const;
 
   const StepProblem& problem_;
@@ -67,8 +70,7 @@ class IncrementalPotential {
   Islands islands_;
   ElasticPotential elastic_;
   std::vector<Vec3> target_, load_;
-  std::vector<double> friction_stiffness_;  // per node, N/m: secant stiffness of lagged friction on the ground
-  std::vector<Mat3> nodal_block_;           // per node: inertia and ground
+  std::vector<double> inertia_;  // per node, N/m: its share of the Hessian's diagonal
 };
 
 }  // namespace geo

@@ -7,10 +7,13 @@
 #include <limits>
 #include <numeric>
 
+#include "mechanics/solver/momentum_balance.h"
+
 namespace geo {
 namespace {
 
 constexpr int most_iterations = 20;  // more are slower than two steps of half the length
+constexpr int most_balanced = 8;     // further ones end where displacements are accurate
 constexpr int most_halvings = 16;    // of a direction; each trial is at most half the one before
 // Spacings that an island may move before its stiffness is recomputed: strains change by about a
 // tenth. Measured in docs/decisions/044 and 048.
@@ -35,12 +38,14 @@ NewtonSolver::NewtonSolver(const StepProblem& problem, SolverCache& cache)
 bool NewtonSolver::solve(StepReport& report) {
   at_ = predict(potential_, rotation_, active_);
   trial_ = predicted_ = at_.u;
+  potential_.begin_iterate(active_, at_.value);
   for (int k = 0; k < most_iterations; ++k) {
     if (!iterate(k == 0, report)) return false;
     if (active_.none()) {
       report.energy = std::accumulate(at_.response.energy.begin(), at_.response.energy.end(), 0.0);
       return true;
     }
+    potential_.begin_iterate(active_, at_.value);
     potential_.force(active_, at_.u, at_.response, at_.force);
   }
   return false;
@@ -50,27 +55,33 @@ bool NewtonSolver::solve(StepReport& report) {
 // decrease along it.
 bool NewtonSolver::iterate(bool first, StepReport& report) {
   linearise_stale();
-  potential_.update_nodal_blocks(active_, at_.u);
   preconditioner_.update(potential_, at_.u);
   update_accuracy();
   report.cg +=
       conjugate_gradients(potential_, preconditioner_, active_, at_.force, {first, moved_, accuracy_}, direction_);
   ++report.newton;
   rotation_.conserve_momentum(active_, at_.u, direction_.step);
+  MomentumBalance balance(potential_, active_, at_.u);
+  balance.correct(direction_.step);
   active_.maximum(length_, [&](std::size_t i) { return problem_.squared_in_spacings(direction_.step[i], i); });
   active_.take_square_roots(length_);
   for (std::size_t p = 0; p < length_.size(); ++p)
     if (active_[p] && !std::isfinite(length_[p])) return false;
   const std::vector<RigidMotion> rotations = rotation_.rotations(at_.u, direction_.step);
-  return line_search(rotations, unconverged(rotations));
+  std::vector<char> searching = unconverged(rotations);
+  // A direction that only balances momentum may alternate between contacts without end.
+  if (++iterates_ <= most_balanced) balance.mark_unbalanced(direction_.step, iterates_, searching);
+  for (std::size_t p = 0; p < searching.size(); ++p) searching[p] = searching[p] && active_[p];
+  return line_search(rotations, std::move(searching));
 }
 
 void NewtonSolver::update_accuracy() {
-  std::vector<double> correction;
+  std::vector<double> correction, spacing;
+  active_.maximum(spacing, [&](std::size_t i) { return potential_.is_touched(i) ? problem_.solid.spacing[i] : 0; });
   active_.maximum(correction, [&](std::size_t i) { return problem_.squared_in_spacings(at_.u[i] - predicted_[i], i); });
   active_.take_square_roots(correction);
   for (std::size_t p = 0; p < accuracy_.size(); ++p)
-    if (active_[p]) accuracy_[p] = problem_.accuracy_after(correction[p]);
+    if (active_[p]) accuracy_[p] = StepProblem::accuracy_after(problem_.accuracy_in_contact(spacing[p]), correction[p]);
 }
 
 void NewtonSolver::linearise_stale() {

@@ -43,7 +43,8 @@ class NewtonSolver {
   std::vector<Vec3> trial_, predicted_;  // predicted_: where Newton's method began
   std::vector<double> accuracy_;         // per island, in spacings
   std::vector<double> length_;           // per island: of the direction, largest over nodes, in spacings
-  std::vector<double> moved_;            // per island: distance since its stiffness was computed, in spacings
+  int iterates_ = 0;
+  std::vector<double> moved_;  // per island: distance since its stiffness was computed, in spacings
 };
 
 }  // namespace geo

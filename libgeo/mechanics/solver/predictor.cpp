@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "geometry/affine_fit.h"
-#include "mechanics/solver/ground_contact.h"
+#include "mechanics/solver/fixed_nodes.h"
 
 namespace geo {
 namespace {

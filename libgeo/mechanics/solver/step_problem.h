@@ -21,13 +21,23 @@ struct StepProblem {
   double squared_in_spacings(const Vec3& v, std::size_t node) const {
     return v.squaredNorm() / (solid.spacing[node] * solid.spacing[node]);
   }
+  /// The accuracy, in spacings, where contact acts on nodes with spacings up to `spacing`; 0: on
+  /// none. An error e of displacements is one of e / Δt² of accelerations, which friction is to
+  /// stand out from: at the default accuracy of 0.001 at most a hundredth of gravity
+  /// (docs/decisions/088).
+  double accuracy_in_contact(double spacing) const {
+    constexpr double acceleration_per_accuracy = 10;  // in gravities: 0.01 / 0.001
+    const double fall = acceleration_per_accuracy * dt * dt * environment.gravity.norm();
+    return fall > 0 && fall < spacing ? accuracy * fall / spacing : accuracy;
+  }
   /// The accuracy, in spacings, of an island whose nodes forces have moved by up to `correction`
   /// spacings from where inertia or the prediction took them. Backward Euler's error in a time step
   /// is about half of the correction, so beyond a tenth of a spacing the accuracy is relative to
   /// it. A hundredth of a spacing is the most that it becomes so (docs/decisions/065, 087).
-  double accuracy_after(double correction) const {
+  /// `touched`: accuracy_in_contact().
+  static double accuracy_after(double touched, double correction) {
     constexpr double unit_correction = 0.1, loose_accuracy = 0.01;
-    return std::max(accuracy, std::min(accuracy * correction / unit_correction, loose_accuracy));
+    return std::max(touched, std::min(touched * correction / unit_correction, loose_accuracy));
   }
   /// Tolerance of |d| (|d| + moved), in squared spacings, an estimate of the error that a direction
   /// d leaves: the Newton error grows with |d|², and with |d| times the distance moved since the

@@ -5,15 +5,20 @@
 //   E = ½ k d²,  −∇E = k d n with n = −∇d,  ∇²E = k ∇²(½ d²), which is k n nᵀ behind a plane.
 //
 // Friction on the slip s, the relative displacement across n since the step began, with the bound
-// b = μ N of the normal force N of that moment (Li et al. 2020, Incremental Potential Contact, § 5,
-// with the Huber function for the smooth transition) and the slip regularisation ε, model units:
+// b = μ N of a normal force N that is constant while energies are compared (Li et al. 2020,
+// Incremental Potential Contact, § 5, with the Huber function for the smooth transition) and the
+// slip regularisation ε, model units:
 //   E = b |s|² / (2 ε) where |s| < ε, else b (|s| − ½ ε),
 //   −∇E = −c s,  ∇²E ≼ c (I − n nᵀ),  c = b / max(|s|, ε), the secant stiffness.
 // The secant Hessian is that of E where |s| < ε. Elsewhere it bounds that of E from above, which is
 // less by c ŝ ŝᵀ, with ŝ = s / |s|.
+//
+// N is that of the step's beginning where the same contact balanced momentum then. A contact that
+// is new in the step takes N from each Newton iterate but the first (docs/decisions/088).
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include "mechanics/terms/potential.h"
 
@@ -38,32 +43,57 @@ inline Mat3 plane_penalty_hessian(double stiffness, const Vec3& normal) {
   return stiffness * normal * normal.transpose();
 }
 
-/// Coulomb friction of one contact over a step. The normal force is that of the step's beginning.
+/// Coulomb friction of one contact over a step.
 struct LaggedFriction {
   double bound = 0;                ///< μ N, N
   double slip_regularisation = 0;  ///< ε, model units; positive where the bound is
 
-  /// False where the contact did not press when the step began.
+  /// False where the contact does not press.
   bool acts() const { return bound > 0; }
   /// Energy, J. `slip`: |s|, model units.
-  double energy(double slip) const {
-    return bound *
-           (slip < slip_regularisation ? 0.5 * slip * slip / slip_regularisation : slip - 0.5 * slip_regularisation);
+  double energy(double slip) const { return bound * energy_over_bound(slip); }
+  /// Energy over the bound, model units.
+  double energy_over_bound(double slip) const {
+    return slip < slip_regularisation ? 0.5 * slip * slip / slip_regularisation : slip - 0.5 * slip_regularisation;
   }
   /// c, N/m: the force over the slip.
   double secant_stiffness(double slip) const { return bound / std::max(slip, slip_regularisation); }
   /// Adds the force −c s and a Hessian between the true one and the secant, c (I − n nᵀ − θ ŝ ŝᵀ).
   /// θ = 1 − ½ |s − s'| / |s|, not less than 0, with s' the slip of Newton's last iterate: the true
   /// curvature where the slip has settled, the secant where it may turn back (docs/decisions/087).
-  /// `slip`: s; `normal_projector`: n nᵀ; `last_slip`: s', zero in the first iterate; becomes s.
-  void add(const Vec3& slip, const Mat3& normal_projector, Vec3& last_slip, Vec3& force, Mat3& hessian) const {
+  /// `slip`: s; `normal_projector`: n nᵀ; `last_slip`: s', zero in the first iterate.
+  void add(const Vec3& slip, const Mat3& normal_projector, const Vec3& last_slip, Vec3& force, Mat3& hessian) const {
     const double length = slip.norm(), stiffness = secant_stiffness(length);
     force -= stiffness * slip, hessian += stiffness * (Mat3::Identity() - normal_projector);
     if (length > slip_regularisation && !last_slip.isZero(0)) {
       const double settled = std::max(0.0, 1 - 0.5 * (slip - last_slip).norm() / length);
       hessian -= settled * stiffness / (length * length) * slip * slip.transpose();
     }
-    last_slip = slip;
+  }
+};
+
+/// Whether a contact's normal force at the beginning of a substep is what balanced momentum there.
+enum class NormalForce : std::uint8_t {
+  balanced,  ///< it is: the same contact pressed in the step before
+  estimated  ///< it is not: the contact is new, or one of others than before
+};
+
+/// The friction of one contact, as Newton's method remembers it.
+struct FrictionMemory {
+  double normal_force = 0;                             ///< N: that the bound is of
+  Vec3 slip = Vec3::Zero(), last_slip = Vec3::Zero();  ///< of the present iterate and the one before
+  NormalForce kind = NormalForce::estimated;
+  bool has_iterate = false;  ///< of the substep
+
+  /// Begins a substep with the normal force of that moment.
+  void begin_substep(double normal, NormalForce of) { *this = {normal, Vec3::Zero(), Vec3::Zero(), of, false}; }
+  /// Begins an iterate. Returns the change of the normal force that the bound is of, if that was
+  /// estimated.
+  double begin_iterate(const Vec3& new_slip, double normal) {
+    last_slip = slip, slip = new_slip;
+    const double change = has_iterate && kind == NormalForce::estimated ? normal - normal_force : 0;
+    normal_force += change, has_iterate = true;
+    return change;
   }
 };
 

@@ -67,9 +67,13 @@ class Potential {
     Vec3 force = Vec3::Zero();    ///< −∂E/∂d, N; each node gets it times its weight
     Mat3 hessian = Mat3::Zero();  ///< ∂²E/∂d², N/m, or an upper bound; positive semidefinite
   };
-  /// The derivatives of E_k at relative displacement d. Several threads may call this, for
-  /// different k.
-  virtual Derivatives derivatives(std::size_t k, const Vec3& d) = 0;
+  /// The derivatives of E_k at relative displacement d.
+  virtual Derivatives derivatives(std::size_t k, const Vec3& d) const = 0;
+
+  /// Begins a Newton iterate in which the k-th term has relative displacement d. Takes the bound of
+  /// its friction from its normal force there, except in the first iterate of a substep. Returns
+  /// the change of energy(k, d) by that, J. Several threads may call this, for different k.
+  virtual double begin_iterate(std::size_t /*k*/, const Vec3& /*d*/) { return 0; }
 
   /// An upper bound of the k-th Hessian's eigenvalues, N/m. 0: explicit steps ignore the term.
   virtual double stiffness_bound(std::size_t /*k*/) const { return 0; }

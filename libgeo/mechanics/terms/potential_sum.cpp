@@ -92,6 +92,17 @@ void PotentialSum::update_derivatives(std::span<const std::uint32_t> island, con
   update_matrices();
 }
 
+void PotentialSum::begin_iterate(std::span<const std::uint32_t> island, const std::vector<char>& selected,
+                                 std::vector<double>& sum) {
+  const auto terms = terms_to_evaluate(island, selected);
+  std::vector<double> change(terms.size());
+  parallel_for(terms.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      change[k] = terms_[terms[k]].potential->begin_iterate(terms_[terms[k]].index, displacement_[terms[k]]);
+  });
+  for (std::size_t k = 0; k < terms.size(); ++k) sum[island[terms_[terms[k]].first_node]] += change[k];
+}
+
 // Newly active terms join the second matrix. When that is no longer small, the first one is rebuilt
 // from all.
 void PotentialSum::update_matrices() {
@@ -113,6 +124,15 @@ void PotentialSum::update_matrices() {
   for (std::uint32_t t = 0; t < terms_.size(); ++t)
     if (matrix_of_[t]) matrix_of_[t] = 1, terms.push_back(t);
   matrices_[0] = StencilMatrix(terms, stencils_, start_.size()), matrices_[1] = {};
+}
+
+std::vector<PotentialSum::LinearisedTerm> PotentialSum::linearised_terms() const {
+  std::vector<LinearisedTerm> terms;
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (!idle_[t])
+      terms.push_back(
+          {terms_[t].potential, terms_[t].index, stencils_[t], force_[t], hessian_[t].topRows<3>().cast<double>()});
+  return terms;
 }
 
 Vec3 PotentialSum::force_at(std::size_t node) const {

@@ -33,10 +33,24 @@ class PotentialSum {
   /// Evaluates the derivatives of selected islands, at the displacements of the last add_energy()
   /// that selected them.
   void update_derivatives(std::span<const std::uint32_t> island, const std::vector<char>& selected);
+  /// Begins a Newton iterate of selected islands at the displacements of the last add_energy() that
+  /// selected them, and adds the change of each island's energy by friction to energy[island], J.
+  void begin_iterate(std::span<const std::uint32_t> island, const std::vector<char>& selected,
+                     std::vector<double>& energy);
   /// True if a term of the node has been active since the step began.
   bool acts_on(std::size_t node) const {
     return !matrices_[0].stencils_of(node).empty() || !matrices_[1].stencils_of(node).empty();
   }
+  /// A term that may act, with its derivatives by the last update_derivatives().
+  struct LinearisedTerm {
+    const Potential* potential;
+    std::uint32_t index;  ///< in the potential
+    Stencil stencil;
+    Vec3 force;    ///< −∂E/∂d, N
+    Mat3 hessian;  ///< ∂²E/∂d², N/m
+  };
+  /// All of these, in their order.
+  std::vector<LinearisedTerm> linearised_terms() const;
   /// The force −∂E/∂u at a node, N, by the last update_derivatives().
   Vec3 force_at(std::size_t node) const;
   /// Prepares hessian_product_at() for the product with p, by the Hessians of the last

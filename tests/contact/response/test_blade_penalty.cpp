@@ -20,7 +20,10 @@ struct Nodes {
   void add(const Vec3& x, double gap = 0) {
     position.push_back(x), displacement.push_back(Vec3::Zero()), clearance.push_back(gap), mass.push_back(2);
   }
-  BladeNodes view() const { return {position, displacement, clearance, mass}; }
+  BladeNodes view() const {
+    return {position, displacement, clearance, [&](std::size_t i) { return clearance[i]; },
+            [&](std::size_t i) { return mass[i]; }};
+  }
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "cases.h"
 #include "contact/response/obstacle_penalty.h"
 #include "contact/response/self_contact_penalty.h"
+#include "contact/surface/surface_targets.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
 
@@ -37,14 +38,13 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, and its Hessian
   const Block block(0.3);
   Random random(3);
   const std::size_t n = block.solid.size();
-  const std::vector<std::uint8_t> all(n, 1);
   for (const bool plane : {true, false}) {
     const auto shape =
         std::make_shared<RigidShape>(plane ? RigidShape::half_space({0.1, -0.2, 1}) : RigidShape(make_pumpkin(4)));
     const Vec3 below = plane ? Vec3(0.5, 0.5, 0.1) : Vec3(0.5, 0.45, -0.5);
     ObstaclePenalty o(shape, {1e4, 0.4}, at(below), at(below + Vec3(0.01, 0, 0.004), {1, 1, 0}, 0.02));
     std::vector<Vec3> u(n, Vec3::Zero());
-    o.find_contacts(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+    o.find_contacts(block.weights, surface_targets(block.weights, u), 0.5, 1e-3);
     o.begin_substep(u, 0, 1);
     REQUIRE(o.depth(u) > 0.01);
     const std::vector<Vec3> begun = u;
@@ -70,12 +70,11 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, and its Hessian
 TEST_CASE("an obstacle's reaction is opposite to force and torque on the body") {
   const Block block(0.3);
   const std::size_t n = block.solid.size();
-  const std::vector<std::uint8_t> all(n, 1);
   const Vec3 place(0.5, 0.45, -0.5);
   ObstaclePenalty o(std::make_shared<RigidShape>(make_pumpkin(6)), {1e4, 0.4}, at(place),
                     at(place + Vec3(0.02, 0.01, 0.01)));
   std::vector<Vec3> u(n, Vec3::Zero());
-  o.find_contacts(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+  o.find_contacts(block.weights, surface_targets(block.weights, u), 0.5, 1e-3);
   o.begin_substep(u, 0, 1);
   const std::vector<Vec3> force = AssembledPotential(o, u).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
@@ -91,7 +90,6 @@ TEST_CASE("contacts within their activation distance are zero: energy and force 
   const Block block(0.3);
   const auto [first, count] = seeds(40);
   const std::size_t n = block.solid.size();
-  const std::vector<std::uint8_t> all(n, 1);
   std::size_t skipped = 0, acted = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
@@ -105,7 +103,7 @@ TEST_CASE("contacts within their activation distance are zero: energy and force 
     SelfContactPenalty touch({0.4, 0.05});
     std::vector<Vec3> u, part;
     for (std::size_t i = 0; i < n; ++i) u.push_back(0.02 * random.direction());
-    o.find_contacts(block.body, block.weights, {u, {}, all}, 0.5, 1e-3);
+    o.find_contacts(block.weights, surface_targets(block.weights, u), 0.5, 1e-3);
     for (int r = 0; r < 30; ++r) {
       RelativeStencil row;
       for (int k = 0; k < 4; ++k)

@@ -43,7 +43,6 @@ struct Linearised {
     potential.evaluate(all, start.displacement, value, &response);
     potential.force(all, start.displacement, response, force);
     potential.linearise(all, response);
-    potential.update_nodal_blocks(all, start.displacement);
     preconditioner.update(potential, start.displacement);
   }
   Linearised(const Linearised&) = delete;
@@ -131,16 +130,19 @@ TEST_CASE("a direction ends where its residual is below the accuracy, or at a qu
 }
 
 TEST_CASE("accuracy is relative to what forces correct beyond a tenth of a spacing", "[mechanics]") {
-  Linearised bar(1e4, 0.01, 1e-3);
-  const auto of = [&](double accuracy, double correction) {
-    StepProblem problem = bar.problem;
-    problem.accuracy = accuracy;
-    return problem.accuracy_after(correction);
-  };
+  const auto of = [&](double accuracy, double correction) { return StepProblem::accuracy_after(accuracy, correction); };
   CHECK(of(1e-3, 0) == 1e-3);
   CHECK(of(1e-3, 0.1) == Approx(1e-3));
   CHECK(of(1e-3, 0.5) == Approx(5e-3));
   CHECK(of(1e-3, 4) == 0.01);
   CHECK(of(1e-6, 4) == Approx(4e-5));
   CHECK(of(0.03, 4) == 0.03);
+}
+
+TEST_CASE("accuracy in contact is a hundredth of gravity's way in a step, at the default", "[mechanics]") {
+  const Linearised bar(1e4, 0.01, 1e-3);
+  const double way = 0.01 * 0.01 * 9.81;
+  CHECK(bar.problem.accuracy_in_contact(0.1) == Approx(0.01 * way / 0.1));
+  CHECK(bar.problem.accuracy_in_contact(0) == 1e-3);          // nothing touches
+  CHECK(bar.problem.accuracy_in_contact(0.5 * way) == 1e-3);  // the way is longer than a tenth of the spacing
 }

@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
+#include "contact/response/obstacle_penalty.h"
+#include "contact/surface/surface_targets.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
 #include "mechanics/material/elastic_lanes.h"
@@ -97,7 +99,7 @@ struct Bed : Potential {
   std::size_t size() const override { return on.size(); }
   Stencil stencil(std::size_t k) const override { return {&on[k], 1}; }
   double energy(std::size_t, const Vec3& d) const override { return 0.5 * firm * std::pow(std::max(0.0, -d.y()), 2); }
-  Derivatives derivatives(std::size_t, const Vec3& d) override {
+  Derivatives derivatives(std::size_t, const Vec3& d) const override {
     if (d.y() < 0) return {-firm * d.y() * Vec3::UnitY(), firm * Vec3::UnitY() * Vec3::UnitY().transpose()};
     return {};
   }
@@ -177,16 +179,28 @@ TEST_CASE("what a solid keeps from step to step changes nothing but time") {
     for (int k = 1; k <= 8; ++k) {
       if (random.below(2))
         solid.update(body, split(body, front, blade_at(a, b, down, static_cast<int>(front.step) + 1)), state);
-      env.ground = random.below(2),
-      env.ground_point = Vec3(0, 0, 0.02);  // what touches it has another stiffness upwards
+      // Nodes that touch an obstacle have another stiffness upwards.
+      SurfaceWeights weights;
+      weights.rebuild(body, solid);
+      const auto touch = [&](ObstaclePenalty& ground) {
+        ground.find_contacts(weights, surface_targets(weights, state.displacement), 1, 1e-5);
+      };
+      const Eigen::Isometry3d place(Eigen::Translation3d(0, 0, 0.02));
+      const auto below = std::make_shared<RigidShape>(RigidShape::half_space(Vec3::UnitZ()));
+      ObstaclePenalty ground(below, {1e6, 0.5}, place, place), ground_anew = ground;
+      const bool touches = random.below(2) == 1;
+      if (touches) touch(ground), touch(ground_anew);
       env.fixed.assign(body.nodes.size(), 0);
       for (std::size_t i = 0; i < body.nodes.size(); ++i) env.fixed[i] = body.nodes.position[i].x() < 0.1 && k % 3 != 0;
       const double dt = random.below(3) ? 0.01 : 0.02;
       State anew = state;
+      if (touches) env.contact = {&ground_anew};
       Solid(body, rubber()).step_implicit(anew, dt, env, 1e-3);
+      if (touches) env.contact = {&ground};
       solid.step_implicit(state, dt, env, 1e-3);
       CHECK(anew.displacement == state.displacement);
       CHECK(anew.velocity == state.velocity);
+      env.contact.clear();
     }
   }
 }

@@ -25,7 +25,7 @@ struct Springs : Potential {
   Stencil stencil(std::size_t k) const override { return stencils[k]; }
   bool within_components() const override { return inside_components; }
   double energy(std::size_t k, const Vec3& d) const override { return 0.5 * d.dot(stiffness[k] * d); }
-  Derivatives derivatives(std::size_t k, const Vec3& d) override { return {-stiffness[k] * d, stiffness[k]}; }
+  Derivatives derivatives(std::size_t k, const Vec3& d) const override { return {-stiffness[k] * d, stiffness[k]}; }
   double stiffness_bound(std::size_t k) const override { return stiffness[k].trace(); }
 };
 

@@ -172,7 +172,7 @@ void summarise(const RecordedRun& recorded, const sim::Setup& setup, const sim::
         tool::counted(pieces, "piece") + sim::seconds_in_words(recorded.total()));
 }
 
-// Says what is not as it was asked for. Throws tool::Failure for it where the command is strict.
+// Says what the scene does not ask for. Throws tool::Failure for it where the command is strict.
 void review(RecordedRun& recorded, const sim::Setup& setup, bool strict, const tool::Tool& t) {
   const std::vector<double>& spacing = recorded.run().body().nodes.spacing;
   const double mean = std::accumulate(spacing.begin(), spacing.end(), 0.0) / double(spacing.size());
@@ -180,7 +180,8 @@ void review(RecordedRun& recorded, const sim::Setup& setup, bool strict, const t
   for (std::string& thin : sim::thin_models(setup, recorded.run().body())) faults.push_back(std::move(thin));
   for (const std::string& fault : faults) t.say("kerf-sim: " + fault);
   if (strict && !faults.empty())
-    throw tool::Failure("--strict: " + tool::counted(faults.size(), "thing") + " not as asked for; the frames are there");
+    throw tool::Failure("--strict: " + tool::counted(faults.size(), "thing") +
+                        " not as asked for; the frames are there");
 }
 
 // Creates the folder and the run in it: resumed, or new with its first frame and checkpoint.

@@ -13,17 +13,17 @@ namespace geo {
 /// beside it.
 class Resolution {
  public:
-  /// Of coordinates that come out of arithmetic on doubles: one ulp.
+  /// Bits with which a unit is one ulp of the size, as of coordinates computed in doubles.
   static constexpr int of_doubles = 52;
 
-  /// 2^−bits of the power of two above the size of a model, model units. No resolution, which rounds
-  /// nothing, for a size that is zero or not finite. Precondition: bits is at most 52.
+  /// Units of 2^−bits of the power of two above the size of a model, model units. Rounds nothing
+  /// for a size that is zero or not finite. Precondition: bits is at most 52.
   explicit Resolution(double size, int bits = of_doubles) {
     if (!(size > 0) || !std::isfinite(size)) return;
     int exponent = 0;
     std::frexp(size, &exponent);
     unit_ = std::ldexp(1.0, exponent - bits);
-    // Beside 1.5 · 2^52 units, doubles are one unit apart: adding this number rounds to whole units.
+    // Beside 1.5 · 2^52 units, doubles are one unit apart: adding this number rounds to units.
     shift_ = 1.5 * std::ldexp(unit_, of_doubles);
     whole_ = std::ldexp(unit_, of_doubles - 2);
   }

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kerf/parallel.h"
 #include "body/locate.h"
+#include "kerf/parallel.h"
 #include "simulation/existing_cuts.h"
 #include "simulation/mapped_places.h"
 
@@ -20,8 +20,8 @@ constexpr double most_deviation = 0.02;
 // Longest segment of a front, in spacings: a midpoint alone does not see an edge bent twice.
 constexpr double longest_segment = 2;
 
-// The walls of existing cuts are found along an edge to this, in spacings: the shortest segment of a
-// run.
+// The walls of existing cuts are found along an edge to this, in spacings: the shortest segment of
+// a run.
 constexpr double wall_accuracy = 0.05;
 
 // A point of the edge, mapped into the material.
@@ -146,11 +146,11 @@ std::vector<std::pair<std::size_t, std::size_t>> stays_in_cut(const std::vector<
   return stays;
 }
 
-// Takes samples in existing cuts out of the material, and beside them those in air outside the skin.
-// From there, the skin bulges into what the edge sweeps, and a strip would lie on the sheet of the
-// cut. An edge that comes from whole material and is in a cut for less than a spacing crosses it, and
-// stays. Otherwise a part in whole material keeps one more sample, so that it ends at the sheet or in
-// air.
+// Takes samples in existing cuts out of the material, and beside them those in air outside the
+// skin. From there, the skin bulges into what the edge sweeps, and a strip would lie on the sheet
+// of the cut. An edge that comes from whole material and is in a cut for less than a spacing
+// crosses it, and stays. Otherwise a part in whole material keeps one more sample, so that it ends
+// at the sheet or in air.
 class CutLeaver {
  public:
   CutLeaver(std::vector<Sample>& samples, const Complex& surface) : samples_(samples), surface_(surface) {}

@@ -27,8 +27,9 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
 
 /// First a front for each run: the one among `before` that the run continues. Fronts are joined
 /// where a run continues several, and split where several runs continue one. A run that continues
-/// none gets a front without points. Then the fronts that no run continues, as left: the edge continues them
-/// when it comes back through their cut. Of those that have left the material, one a crack remains.
+/// none gets a front without points. Then the fronts that no run continues, as left: the edge
+/// continues them when it comes back through their cut. One a crack remains of those that have left
+/// the material.
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
                                  const Body& body);
 

@@ -127,7 +127,7 @@ bool ExistingCuts::can_go_on(double at) const {
 }
 
 std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
-                                     std::span<const EdgePoint> run, std::span<const EdgeFront> fronts) {
+                                    std::span<const EdgePoint> run, std::span<const EdgeFront> fronts) {
   std::vector<EdgePoint> begin(run.begin(), run.end());
   const Complex& surface = moved.body.surface;
   if (surface.crack_count() == 0) return begin;

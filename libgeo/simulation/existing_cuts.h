@@ -30,9 +30,9 @@ class ExistingCuts {
   /// `fronts`: of the blade, those that its edge has left included.
   ExistingCuts(const Body& body, std::span<const EdgeFront> fronts);
   /// Whether a place of the blade's edge in the material is in a cut. One of these holds:
-  /// - it is nearer to a sheet than a twentieth of the node spacing, the length that a front resolves;
-  /// - it is nearer to a sheet of this blade than a quarter of it, and than half of its distance from
-  ///   the blade's fronts that can go on, ahead of which the material is whole;
+  /// - it is nearer to a sheet than a twentieth of the node spacing, which a front resolves;
+  /// - it is nearer to a sheet of this blade than a quarter of it, and than half of its distance
+  ///   from the blade's fronts that can go on, ahead of which the material is whole;
   /// - a sheet hides it from `node`, the nearest one in the world: it is beyond the wall, in air.
   bool contain(const Vec3& place, NodeId node) const;
   /// Whether a front that can go on has this edge parameter. It holds its points in the cut by
@@ -47,15 +47,15 @@ class ExistingCuts {
   std::vector<std::int32_t> own_;  // numbers of this blade's cracks, ascending
 };
 
-/// Where the front of a run begins. A point that has come from a cut, or from air, since the fraction
-/// `before` of the time step begins there; in a cut, a twentieth of a node spacing over its sheet. The
-/// others begin where they are. `fronts`: of the blade.
+/// Where the front of a run begins. A point that has come from a cut, or from air, since the
+/// fraction `before` of the time step begins there; in a cut, a twentieth of a node spacing over
+/// its sheet. The others begin where they are. `fronts`: of the blade.
 std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
                                     std::span<const EdgePoint> run, std::span<const EdgeFront> fronts);
 
 /// Makes the first step of a front that begins in a cut cross the sheet, behind its border. So the
 /// next step, which passes the border on the other side, leaves no bridge: sheets that only touch,
-/// but for rounding, need not meet. Changes `to` where the front begins in a cut. `spacing`: of the
+/// but for rounding, need not meet. Changes `to` where the front begins in a cut. `spacing`: of
 /// nodes at each point, model units.
 void cross_first(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                  std::vector<Vec3>& to);

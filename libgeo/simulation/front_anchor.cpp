@@ -11,8 +11,8 @@ namespace {
 
 constexpr double reach = 2;  // spacings, of a correction; measured in docs/decisions/086
 
-// Faces lower than this, in sizes of the model, have no normal: places of blades are rounded to 2⁻³³
-// of the size (mapped_places.h), which turns a face that is a thousand times as high by a thousandth.
+// Faces lower than this, in sizes of the model, have no normal: places of blades are rounded to
+// 2⁻³³ of the size (mapped_places.h), and a face a thousand times as high turns by a thousandth.
 constexpr double lowest_face = 0x1p-23;
 
 // Per front point: the sum of the normals of the sheet's faces beside it, each as long as twice its

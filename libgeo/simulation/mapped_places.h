@@ -11,10 +11,11 @@ namespace geo {
 /// the mesh would leave specks, one in a face would shave it. Refers to the complex.
 class MappedPlaces {
  public:
+  /// For the places in a body with this complex.
   explicit MappedPlaces(const Complex& surface);
-  /// The place on a grid of 2⁻³³ (1.2e-10) of the model's size: a hundred times the error, so that a
-  /// plane along axes stays a plane. A place so near to the skin goes outside, by ten units of the
-  /// grid: whether it is in the material is not known.
+  /// The place on a grid of 2⁻³³ (1.2e-10) of the model's size: a hundred times the error, so that
+  /// a plane along axes stays a plane. A place so near to the skin goes outside, by ten units of
+  /// the grid: whether it is in the material is not known.
   Vec3 resolved(const Vec3& place) const;
 
  private:

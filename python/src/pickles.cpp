@@ -80,8 +80,8 @@ py::tuple state_of(const geo::TriangleMesh& m) {
 void require_sound(const geo::TriangleMesh& m) {
   const auto fits = [&](const auto& values) { return values.empty() || values.size() == m.triangles.size(); };
   const geo::Attributes& a = m.attributes;
-  bool sound = fits(m.patch) && fits(m.source) && fits(a.uv) && fits(a.uv2) && fits(a.normal) && fits(a.color) && fits(a.group) &&
-               (m.site.empty() || m.site.size() == m.vertices.size());
+  bool sound = fits(m.patch) && fits(m.source) && fits(a.uv) && fits(a.uv2) && fits(a.normal) && fits(a.color) &&
+               fits(a.group) && (m.site.empty() || m.site.size() == m.vertices.size());
   for (const auto& t : m.triangles)
     for (const auto v : t) sound = sound && v < m.vertices.size();
   for (const auto g : a.group) sound = sound && g >= 0 && static_cast<std::size_t>(g) < a.group_names.size();

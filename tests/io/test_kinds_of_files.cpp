@@ -113,7 +113,7 @@ TEST_CASE("binary STL: the header says nothing, bytes behind the last facet and 
     CHECK(file.notes.empty());
   }
   for (const std::string header : {"", "solid made by a program"})
-    for (const std::string rest : {std::string(1, '\0'), std::string("\r\n"), std::string(512, 'x')}) {
+    for (const std::string& rest : {std::string(1, '\0'), std::string("\r\n"), std::string(512, 'x')}) {
       const SurfaceFile file = read(binary_stl(header, 4) + rest);
       check_tetrahedron(file.mesh);
       CHECK(file.notes ==

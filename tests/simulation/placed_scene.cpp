@@ -81,14 +81,14 @@ class Placer {
     lo = a.cwiseMin(b);
     hi = a.cwiseMax(b);
   }
-  // Of an object whose own coordinates are mapped as vectors: position ↦ image + offset.
+  // The key of an object whose own coordinates are mapped as vectors: position ↦ image + offset.
   void key_about(Motion::Key& key, const Vec3& offset) const {
     key.position = vector(key.position) + offset;
     key.axis = axis(key.axis);
   }
   void material(Material& material) const { material.young *= way_.scale * way_.scale; }
-  // world = motion(place(scale · mesh)): the motion is conjugated, so that it turns about the image of
-  // the origin.
+  // world = motion(place(scale · mesh)): the motion is conjugated, so that it turns about the image
+  // of the origin.
   void obstacle(SceneObstacle& obstacle) const {
     for (Vec3& p : obstacle.mesh.vertices) p = matrix_ * p;
     turn_over(obstacle.mesh);
@@ -174,8 +174,8 @@ CutScene random_cut_scene(std::uint64_t seed) {
   const bool hangs = random.below(2) == 0;  // held by its top, so that it is stretched and gapes
   if (hangs) {
     scene.gravity = {0, 0, random.uniform(-4.0, -0.5)};
-    // Weight strains the material by a thousandth to a fiftieth: where it is stretched by a third, what
-    // a blade meets depends on each node.
+    // Weight strains the material by a thousandth to a fiftieth: where it is stretched by a third,
+    // what a blade meets depends on each node.
     const double strain = std::pow(10.0, random.uniform(-3.0, -1.7));
     scene.material.young = scene.material.density * -scene.gravity.z() * 2 * half / strain;
     double top = 0;

@@ -36,12 +36,12 @@ struct Placement {
 std::array<Placement, 8> placements();
 
 /// A scene in which one to three blades cut a block, a ball or a torus about the origin, 1 to 2
-/// units large: anywhere, in a symmetry plane, in a face, along lines of the mesh, or next to these by
-/// less than doubles resolve. Seed decides all.
+/// units large: anywhere, in a symmetry plane, in a face, along lines of the mesh, or next to these
+/// by less than doubles resolve. Seed decides all.
 CutScene random_cut_scene(std::uint64_t seed);
 
 /// The same scene, placed. Times stay: velocities and accelerations scale with lengths, moduli and
-/// strengths with their square, and toughness with its root besides.
+/// strengths with their square, and toughness with the power 2.5.
 CutScene placed(const CutScene& cut, const Placement& way);
 
 }  // namespace geo

@@ -25,10 +25,10 @@ Outcome cut_block(const std::string& blades, int frames, const Vec3& middle = Ve
                   const std::string& gravity = "[0, 0, 0]") {
   TriangleMesh block = make_block({2, 2, 2}, 0.5);
   for (Vec3& p : block.vertices) p += middle - Vec3(1, 1, 1);
-  const Scene scene = parse_scene("gravity = " + gravity +
-                                      "\n[body]\nmesh = 'a'\nnodes = 300\n[material]\nyoung = 2e5\n[contact]\nself = true\n" +
-                                      blades,
-                                  "s.toml");
+  const Scene scene =
+      parse_scene("gravity = " + gravity +
+                      "\n[body]\nmesh = 'a'\nnodes = 300\n[material]\nyoung = 2e5\n[contact]\nself = true\n" + blades,
+                  "s.toml");
   Simulation sim(scene, block);
   Outcome outcome;
   FrameStats total;
@@ -70,9 +70,10 @@ void check_halves(const Outcome& o, double lower_share, double accuracy = 2e-3) 
 }  // namespace
 
 TEST_CASE("a blade through zero cuts as one beside it") {
-  const Outcome beside = cut_block("[[blade]]\npoints = [[1, -3, 0], [1, 3, 0]]\ndivide = 12\n"
-                                   "keys = [[0, 0, 0, 2, 0, 0, 1, 0], [0.5, 0, 0, -2, 0, 0, 1, 0]]\n",
-                                   14, {1, 0, 0});
+  const Outcome beside = cut_block(
+      "[[blade]]\npoints = [[1, -3, 0], [1, 3, 0]]\ndivide = 12\n"
+      "keys = [[0, 0, 0, 2, 0, 0, 1, 0], [0.5, 0, 0, -2, 0, 0, 1, 0]]\n",
+      14, {1, 0, 0});
   check_halves(beside, 0.5);
   for (const double x : {0.0, 1e-17, -1e-17, 1e-30, -1e-300, 1e-6}) {
     INFO("blade at x = " << x);
@@ -95,7 +96,8 @@ TEST_CASE("a blade in a face of a body at rest cuts nothing") {
 
 TEST_CASE("sawing: out and in again through one's own cut") {
   const std::string ground = "[ground]\npoint = [0, 0, -1]\n";
-  const Outcome once = cut_block(ground + blade(0.026, {{0, 2}, {0.6, 0}, {1.2, -2}}), 34, Vec3::Zero(), "[0, 0, -9.81]");
+  const Outcome once =
+      cut_block(ground + blade(0.026, {{0, 2}, {0.6, 0}, {1.2, -2}}), 34, Vec3::Zero(), "[0, 0, -9.81]");
   check_halves(once, 0.487, 0.01);
   const Outcome often =
       cut_block(ground + blade(0.026, {{0, 2}, {0.3, 0}, {0.6, 2}, {0.9, -2}, {1.1, 2}, {1.3, -2}, {1.4, 0.3}}), 34,
@@ -107,7 +109,8 @@ TEST_CASE("sawing: out and in again through one's own cut") {
 
 TEST_CASE("six strokes of six blades through one plane are one cut") {
   std::string strokes;
-  for (int s = 0; s < 6; ++s) strokes += blade(0.1, {{0.05 + 0.2 * s, s % 2 ? -2 : 2}, {0.22 + 0.2 * s, s % 2 ? 2 : -2}});
+  for (int s = 0; s < 6; ++s)
+    strokes += blade(0.1, {{0.05 + 0.2 * s, s % 2 ? -2 : 2}, {0.22 + 0.2 * s, s % 2 ? 2 : -2}});
   const Outcome o = cut_block(strokes, 32);
   check_halves(o, 0.45);
   CHECK(o.refused == 0);

@@ -1,6 +1,6 @@
-// What a scene computes does not depend on where it is: at the origin, where doubles resolve noise,
-// beside it, mirrored, with axes exchanged, larger or smaller.
-// A campaign: KERF_CASES=60 KERF_SEED=3 test_simulation '[placements]'; one case: KERF_CASE=3000123.
+// Results do not depend on where a scene is: at the origin, where doubles resolve noise, beside it,
+// mirrored, with axes exchanged, larger or smaller.
+// A campaign: KERF_CASES=84 KERF_SEED=3 test_simulation '[placements]'; one case: KERF_CASE=3000123
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -19,13 +19,13 @@ using namespace geo;
 
 namespace {
 
-// What does not depend on the place of a scene, lengths in units of its scale.
 constexpr double least_energy = 1e-6;  // over modulus and volume: a strain of a thousandth
 
+// Results that do not depend on the place of a scene, lengths in units of its scale.
 struct Outcome {
   std::vector<double> volumes;  // of pieces, descending, over that of all
   std::size_t crumbs = 0, crossings = 0, refused = 0;
-  double energy = 0;  // largest elastic energy of a frame, over Young's modulus and volume
+  double energy = 0;     // largest elastic energy of a frame, over Young's modulus and volume
   std::size_t work = 0;  // Newton steps and triangles cut
 };
 
@@ -68,7 +68,8 @@ bool are_same_pieces(const std::vector<double>& a, const std::vector<double>& b)
 // Specks: pieces that only rounding can make where nothing is deformed.
 std::size_t specks(const Outcome& o) {
   constexpr double largest = 1e-9;
-  return static_cast<std::size_t>(std::count_if(o.volumes.begin(), o.volumes.end(), [](double v) { return v < largest; }));
+  return static_cast<std::size_t>(
+      std::count_if(o.volumes.begin(), o.volumes.end(), [](double v) { return v < largest; }));
 }
 
 std::string told(const Outcome& o) {
@@ -98,7 +99,8 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
     scene = seed / ways.size();
     const Outcome there = run(moved);
     INFO("here:  " << told(here) << "\nthere: " << told(there));
-    if (std::getenv("KERF_TELL")) std::cout << seed << " " << moved.about << "\n   " << told(here) << "\n   " << told(there) << std::endl;
+    if (std::getenv("KERF_TELL"))
+      std::cout << seed << " " << moved.about << "\n   " << told(here) << "\n   " << told(there) << std::endl;
     CHECK(here.crossings == 0);
     CHECK(there.crossings == 0);
     CHECK(are_same_pieces(here.volumes, there.volumes));

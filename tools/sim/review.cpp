@@ -15,7 +15,7 @@ namespace {
 // Energy counts as risen above this share of the largest kinetic and elastic energy of the run: ten
 // times the error of the scenes' accuracy.
 constexpr double energy_margin = 0.01;
-// For so many frames: one frame alone may show a penalty that gives back what it has stored.
+// For three frames: one frame alone may show a penalty that gives back what it has stored.
 constexpr int frames_of_rise = 3;
 
 bool moves(const geo::Motion& motion, double from, double to) {
@@ -45,8 +45,8 @@ std::string crossing_fault(const geo::Scene& scene, const std::vector<FrameFigur
 }
 
 std::string lag_fault(const std::vector<FrameFigures>& frames, double spacing) {
-  const auto worst = std::max_element(frames.begin(), frames.end(),
-                                      [](const auto& a, const auto& b) { return a.lag < b.lag; });
+  const auto worst =
+      std::max_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.lag < b.lag; });
   if (worst == frames.end() || worst->lag <= spacing) return {};
   return "the surface is " + tool::rounded(worst->lag) + " behind its nodes in frame " + std::to_string(worst->frame) +
          ", more than their spacing of " + tool::rounded(spacing);

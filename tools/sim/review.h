@@ -1,4 +1,4 @@
-// What of a run is not as it was asked for.
+// Faults of a run: results that its scene does not ask for.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace sim {
 /// The figures of a frame that tell whether the run is as asked for.
 struct FrameFigures {
   int frame = 0;
-  double time = 0;            ///< s
-  std::size_t crossings = 0;  ///< pairs of triangles
-  std::size_t refused = 0;    ///< crack steps
-  std::size_t crumbs = 0;     ///< pieces
-  double lag = 0;             ///< model units
+  double time = 0;                              ///< s
+  std::size_t crossings = 0;                    ///< pairs of triangles
+  std::size_t refused = 0;                      ///< crack steps
+  std::size_t crumbs = 0;                       ///< pieces
+  double lag = 0;                               ///< model units
   double elastic = 0, kinetic = 0, weight = 0;  ///< energies at the frame's end, J
 };
 

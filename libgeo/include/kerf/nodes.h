@@ -68,11 +68,11 @@ NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, co
 
 /// Walls with fewer nodes across than asked for.
 struct ThinMaterial {
-  double share = 0;         ///< of the surface that such walls have, 0 to 1
-  double thickness = 0;     ///< half of their surface belongs to walls that are thinner; 0: none
-  double spacing = 0;       ///< of the nodes there, model units
-  Vec3 at = Vec3::Zero();   ///< a point in a wall of that thickness
-  double enough = 0;        ///< the spacing with which walls of that thickness have enough nodes
+  double share = 0;        ///< of the surface that such walls have, 0 to 1
+  double thickness = 0;    ///< half of their surface belongs to walls that are thinner; 0: none
+  double spacing = 0;      ///< of the nodes there, model units
+  Vec3 at = Vec3::Zero();  ///< a point in a wall of that thickness
+  double enough = 0;       ///< the spacing with which walls of that thickness have enough nodes
 };
 
 /// Finds the walls of a closed surface with fewer than `across` node spacings between their two

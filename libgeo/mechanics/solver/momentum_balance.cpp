@@ -86,7 +86,6 @@ void MomentumBalance::add_inertia_and_loads(const std::vector<Vec3>& direction) 
 // The sums of a stencil's weights in each free-floating island that moves. Both points of a contact
 // within one island sum to zero, up to rounding, and are left out.
 std::vector<std::pair<std::uint32_t, double>> MomentumBalance::centre_weights(Stencil stencil) const {
-  constexpr double rounding = 1e-12;
   std::vector<std::pair<std::uint32_t, double>> sums;
   for (const NodeWeight& e : stencil) {
     const auto f = islands_.free_of_nodes()[e.node];
@@ -97,7 +96,10 @@ std::vector<std::pair<std::uint32_t, double>> MomentumBalance::centre_weights(St
     else
       known->second += e.weight;
   }
-  std::erase_if(sums, [](const auto& sum) { return std::abs(sum.second) < rounding; });
+  std::erase_if(sums, [](const auto& sum) {
+    constexpr double rounding = 1e-12;  // of sums of weights, which are about one
+    return std::abs(sum.second) < rounding;
+  });
   return sums;
 }
 

@@ -175,8 +175,11 @@ void summarise(const RecordedRun& recorded, const sim::Setup& setup, const sim::
 // Says what the scene does not ask for. Throws tool::Failure for it where the command is strict.
 void review(RecordedRun& recorded, const sim::Setup& setup, bool strict, const tool::Tool& t) {
   const std::vector<double>& spacing = recorded.run().body().nodes.spacing;
-  const double mean = std::accumulate(spacing.begin(), spacing.end(), 0.0) / double(spacing.size());
-  std::vector<std::string> faults = sim::faults_of(setup.scene, recorded.figures(), mean);
+  // The elastic energy of a strain of a millionth, which is below any accuracy of a step.
+  const double least = 0.5e-12 * setup.scene.material.young * geo::signed_volume(setup.models.all);
+  const sim::BodyFigures bodies{
+      .spacing = std::accumulate(spacing.begin(), spacing.end(), 0.0) / double(spacing.size()), .least_energy = least};
+  std::vector<std::string> faults = sim::faults_of(setup.scene, recorded.figures(), bodies);
   for (std::string& thin : sim::thin_models(setup, recorded.run().body())) faults.push_back(std::move(thin));
   for (const std::string& fault : faults) t.say("kerf-sim: " + fault);
   if (strict && !faults.empty())

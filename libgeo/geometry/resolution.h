@@ -25,10 +25,10 @@ class Resolution {
     unit_ = std::ldexp(1.0, exponent - bits);
     // Beside 1.5 · 2^52 units, doubles are one unit apart: adding this number rounds to units.
     shift_ = 1.5 * std::ldexp(unit_, of_doubles);
-    whole_ = std::ldexp(unit_, of_doubles - 2);
+    whole_ = std::ldexp(unit_, of_doubles - 1);
   }
 
-  /// The nearest multiple of unit(); a coordinate of 2^50 units and more stays.
+  /// The nearest multiple of unit(); a coordinate of 2^51 units and more stays.
   double rounded(double x) const { return std::abs(x) < whole_ ? (x + shift_) - shift_ : x; }
   /// The same for each coordinate.
   Vec3 rounded(const Vec3& x) const { return {rounded(x[0]), rounded(x[1]), rounded(x[2])}; }

@@ -19,6 +19,16 @@ bool retreats(const Complex& surface, const FrontState& front, const Vec3& from,
   return behind(to, 0.5) || behind(0.5 * (from + to), 0.1);
 }
 
+// Holds points whose neighbours in the material are held: one point that goes on alone, since the
+// material trembles, folds the sheet. `solid`: the points in the material, ascending.
+void hold_lone_points(const std::vector<std::size_t>& solid, std::vector<std::uint8_t>& held) {
+  const std::vector<std::uint8_t> before = held;
+  for (std::size_t k = 0; k < solid.size() && solid.size() > 1; ++k) {
+    const bool left = k == 0 || before[solid[k - 1]], right = k + 1 == solid.size() || before[solid[k + 1]];
+    if (left && right) held[solid[k]] = 1;
+  }
+}
+
 }  // namespace
 
 std::size_t hold_retreating(const Complex& surface, const FrontState& front, std::span<const double> spacing,
@@ -32,6 +42,7 @@ std::size_t hold_retreating(const Complex& surface, const FrontState& front, std
     held[i] = retreats(surface, front, front.points[i].position, to[i], spacing[i]);
   }
   if (solid.empty()) return 0;
+  hold_lone_points(solid, held);
   for (std::size_t i = 0; i < n; ++i) {
     if (front.points[i].id.valid()) continue;
     const auto after = std::lower_bound(solid.begin(), solid.end(), i);

@@ -54,8 +54,8 @@ std::string lag_fault(const std::vector<FrameFigures>& frames, double spacing) {
 
 // The largest energy since the last load is the reference: what bounces gives back energy that it
 // has stored, but no more.
-std::string energy_fault(const geo::Scene& scene, const std::vector<FrameFigures>& frames) {
-  double scale = 0, reference = -std::numeric_limits<double>::infinity();
+std::string energy_fault(const geo::Scene& scene, const std::vector<FrameFigures>& frames, double least_energy) {
+  double scale = least_energy, reference = -std::numeric_limits<double>::infinity();
   for (const FrameFigures& f : frames) scale = std::max(scale, f.elastic + f.kinetic);
   int risen = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -96,7 +96,8 @@ std::vector<FrameFigures> read_figures(const std::string& log) {
   return frames;
 }
 
-std::vector<std::string> faults_of(const geo::Scene& scene, const std::vector<FrameFigures>& frames, double spacing) {
+std::vector<std::string> faults_of(const geo::Scene& scene, const std::vector<FrameFigures>& frames,
+                                   const BodyFigures& bodies) {
   std::vector<std::string> faults;
   if (frames.empty()) return faults;
   faults.push_back(crossing_fault(scene, frames));
@@ -106,8 +107,8 @@ std::vector<std::string> faults_of(const geo::Scene& scene, const std::vector<Fr
   for (const FrameFigures& f : frames) refused += f.refused;
   if (refused > 0)
     faults.push_back(tool::counted(refused, "crack step") + " could not be made, and cuts may lag behind their blades");
-  faults.push_back(lag_fault(frames, spacing));
-  faults.push_back(energy_fault(scene, frames));
+  faults.push_back(lag_fault(frames, bodies.spacing));
+  faults.push_back(energy_fault(scene, frames, bodies.least_energy));
   std::erase_if(faults, [](const std::string& fault) { return fault.empty(); });
   return faults;
 }

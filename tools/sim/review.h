@@ -22,9 +22,16 @@ struct FrameFigures {
 /// The figures in the lines of frames.jsonl. Throws geo::InputError where a line is malformed.
 std::vector<FrameFigures> read_figures(const std::string& log);
 
+/// What faults are measured by.
+struct BodyFigures {
+  double spacing = 0;       ///< mean, of the nodes, model units
+  double least_energy = 0;  ///< J: what is below is noise of the solver
+};
+
 /// A sentence for each thing that is not as asked for: triangles that cross, crumbs at the end,
 /// refused crack steps, a surface that lags more than a node spacing, and energy that rises without
-/// load. `spacing`: of the nodes, model units.
-std::vector<std::string> faults_of(const geo::Scene& scene, const std::vector<FrameFigures>& frames, double spacing);
+/// load.
+std::vector<std::string> faults_of(const geo::Scene& scene, const std::vector<FrameFigures>& frames,
+                                   const BodyFigures& bodies);
 
 }  // namespace sim

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "kerf/body.h"
 #include "kerf/crack.h"
 #include "kerf/scene.h"
 #include "kerf/simulation.h"
@@ -19,7 +18,6 @@ struct EdgePoint {
   double at = 0;  ///< edge parameter: i + t lies between the blade's points i and i + 1
   Vec3 material;
   double spacing = 0;  ///< of the nodes there, model units
-  NodeId node = {};    ///< the nearest one in the world
 };
 
 /// A new front at the given points, at least two. `crack`: number of the crack that it makes, > 0;

@@ -12,8 +12,9 @@ namespace geo {
 /// Holds the points of a front that would go back along the sheet behind it: where `to` is nearer
 /// to the sheet than half its distance from the front, and nearer than a quarter of the spacing.
 /// They keep their places in the front, since no blade makes a cut undone, and a sheet that folds
-/// back on itself cuts off crumbs. A point between two that are held is held, too. Points in air go with the nearest
-/// point in the material. `spacing`: of the nodes at each point, model units. Returns the number of points held.
+/// back on itself cuts off crumbs. A point between two that are held is held, too. Points in air go
+/// with the nearest point in the material. `spacing`: of the nodes at each point, model units.
+/// Returns the number of points held.
 std::size_t hold_retreating(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                             std::vector<Vec3>& to);
 

@@ -31,10 +31,9 @@ struct Sample {
   bool within = false;     // the support of a node
   bool is_in_cut = false;  // one that exists, and no front there can go on
   bool is_held = false;    // by a front that can go on
-  NodeId node;             // the nearest one in the world
   double spacing = 0;
   double gap = std::numeric_limits<double>::infinity();  // distance to the nearest node, less its support radius
-  EdgePoint point() const { return {.at = at, .material = material, .spacing = spacing, .node = node}; }
+  EdgePoint point() const { return {.at = at, .material = material, .spacing = spacing}; }
 };
 
 // Samples a part of the edge. Not shared between threads: it caches deformed surface vertices.
@@ -47,7 +46,7 @@ class EdgeSampler {
         blade_(blade),
         pose_(pose),
         fronts_(fronts),
-        cuts_(body, fronts),
+        cuts_(body.surface, fronts),
         place_(body.surface) {}
 
   Sample at(double parameter) {
@@ -57,14 +56,13 @@ class EdgeSampler {
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
     s.material = place_.resolved(place.position), s.within = place.in_support;
-    s.node = place.nearest;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
       s.gap =
           (s.material - body_.nodes.position[place.nearest.index()]).norm() - body_.nodes.radius[place.nearest.index()];
     }
     s.is_held = s.within && cuts_.can_go_on(parameter);
-    s.is_in_cut = s.within && !s.is_held && cuts_.contain(s.material, s.node);
+    s.is_in_cut = s.within && !s.is_held && cuts_.contain(s.material, s.spacing);
     return s;
   }
 
@@ -222,7 +220,7 @@ bool comes_back(const std::vector<EdgePoint>& run, const EdgeFront& edge, const 
   bool any = false;
   for (const EdgePoint& p : run) {
     if (p.at < from || p.at > to) continue;
-    if (cuts.contain(p.material, p.node) || (place_near(edge, p.at) - p.material).norm() < p.spacing)
+    if (cuts.contain(p.material, p.spacing) || (place_near(edge, p.at) - p.material).norm() < p.spacing)
       any = true;
     else if (is_inside(surface, p.material))
       return false;
@@ -304,9 +302,8 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
 }
 
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
-                                 const Body& body) {
-  const Complex& surface = body.surface;
-  const ExistingCuts cuts(body, before);
+                                 const Complex& surface) {
+  const ExistingCuts cuts(surface, before);
   std::vector<FrontOfRun> parts(runs.size());
   std::vector<EdgeFront> left;
   // Fronts in the material come first: one in air has no claim to the edge parameters of these.

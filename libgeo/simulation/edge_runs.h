@@ -31,6 +31,6 @@ std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& bod
 /// continues them when it comes back through their cut. One a crack remains of those that have left
 /// the material.
 std::vector<EdgeFront> fronts_of(const std::vector<std::vector<EdgePoint>>& runs, const std::vector<EdgeFront>& before,
-                                 const Body& body);
+                                 const Complex& surface);
 
 }  // namespace geo

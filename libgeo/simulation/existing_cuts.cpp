@@ -8,7 +8,6 @@
 
 #include "body/locate.h"
 #include "geometry/distance.h"
-#include "geometry/predicates.h"
 #include "simulation/mapped_places.h"
 
 namespace geo {
@@ -86,29 +85,25 @@ bool has_contact(const FrontState& front) {
   });
 }
 
-ExistingCuts::ExistingCuts(const Body& body, std::span<const EdgeFront> fronts) : body_(body), fronts_(fronts) {
+ExistingCuts::ExistingCuts(const Complex& surface, std::span<const EdgeFront> fronts)
+    : surface_(surface), fronts_(fronts) {
   for (const EdgeFront& edge : fronts)
     if (edge.front.step > 0) own_.push_back(edge.front.crack);
   std::sort(own_.begin(), own_.end());
   own_.erase(std::unique(own_.begin(), own_.end()), own_.end());
 }
 
-bool ExistingCuts::contain(const Vec3& place, NodeId node) const {
-  const Complex& surface = body_.surface;
-  if (surface.crack_count() == 0) return false;
-  const double spacing = body_.nodes.spacing[node.index()];
-  const Vec3& seen_from = body_.nodes.position[node.index()];
-  Box3 box{place, place};
-  box.add(seen_from);
+bool ExistingCuts::contain(const Vec3& place, double spacing) const {
+  if (surface_.crack_count() == 0) return false;
   std::vector<FaceId> near;
-  surface.faces_near(box.grown(own_reach * spacing), near);
+  surface_.faces_near(Box3{place, place}.grown(own_reach * spacing), near);
   double nearest_own = std::numeric_limits<double>::infinity();
   for (const FaceId f : near) {
-    const std::int32_t crack = surface.face(f).crack;
+    const std::int32_t crack = surface_.face(f).crack;
     if (crack == 0) continue;
-    const auto [a, b, c] = surface.corners(f);
+    const auto [a, b, c] = surface_.corners(f);
     const double distance = (closest_point_on_triangle(place, a, b, c) - place).norm();
-    if (distance < any_reach * spacing || segment_meets_triangle(seen_from, place, a, b, c)) return true;
+    if (distance < any_reach * spacing) return true;
     if (std::binary_search(own_.begin(), own_.end(), crack)) nearest_own = std::min(nearest_own, distance);
   }
   return nearest_own < own_reach * spacing && !is_ahead(place, nearest_own);
@@ -136,7 +131,7 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
   // An edge that has left a cut for air cuts nothing.
   if (std::count(is_whole.begin(), is_whole.end(), 1) == 0) return begin;
   const MapAt start(moved, blade, before);
-  const ExistingCuts cuts(moved.body, fronts);
+  const ExistingCuts cuts(surface, fronts);
   const MappedPlaces places(surface);
   InverseDeformation::VertexCache memory;
   std::vector<std::uint8_t> is_in_air(begin.size(), 0), is_in_cut(begin.size(), 0);
@@ -147,7 +142,7 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
     if (!place.in_support) continue;
     is_in_air[i] = !is_inside(surface, place.position);
     if (is_in_air[i]) p.material = place.position;
-    if (is_in_air[i] || !is_whole[i] || !cuts.contain(place.position, place.nearest)) continue;
+    if (is_in_air[i] || !is_whole[i] || !cuts.contain(place.position, p.spacing)) continue;
     const SheetPlace sheet = nearest_sheet(surface, place.position, own_reach * p.spacing);
     const double height = any_reach * p.spacing;
     is_in_cut[i] = std::isfinite(sheet.distance);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kerf/body.h"
+#include "kerf/complex.h"
 #include "kerf/simulation.h"
 #include "simulation/blade_way.h"
 #include "simulation/edge_front.h"
@@ -28,13 +28,13 @@ bool has_contact(const FrontState& front);
 class ExistingCuts {
  public:
   /// `fronts`: of the blade, those that its edge has left included.
-  ExistingCuts(const Body& body, std::span<const EdgeFront> fronts);
-  /// Whether a place of the blade's edge in the material is in a cut. One of these holds:
+  ExistingCuts(const Complex& surface, std::span<const EdgeFront> fronts);
+  /// Whether a place of the blade's edge in the material is in a cut, by one of two measures:
   /// - it is nearer to a sheet than a twentieth of the node spacing, which a front resolves;
   /// - it is nearer to a sheet of this blade than a quarter of it, and than half of its distance
-  ///   from the blade's fronts that can go on, ahead of which the material is whole;
-  /// - a sheet hides it from `node`, the nearest one in the world: it is beyond the wall, in air.
-  bool contain(const Vec3& place, NodeId node) const;
+  ///   from the blade's fronts that can go on, ahead of which the material is whole.
+  /// `spacing`: of the nodes there, model units.
+  bool contain(const Vec3& place, double spacing) const;
   /// Whether a front that can go on has this edge parameter. It holds its points in the cut by
   /// itself (edge_retreat.h).
   bool can_go_on(double at) const;
@@ -42,7 +42,7 @@ class ExistingCuts {
  private:
   bool is_ahead(const Vec3& place, double distance) const;
 
-  const Body& body_;
+  const Complex& surface_;
   std::span<const EdgeFront> fronts_;
   std::vector<std::int32_t> own_;  // numbers of this blade's cracks, ascending
 };

@@ -337,7 +337,7 @@ std::vector<std::vector<EdgePoint>> Simulation::Impl::map_edge(const MovedBody& 
     if (fronts.empty()) fronts.resize(1);
   } else {
     runs = edge_runs(at.map(), body, blade, at.pose(), fronts);
-    fronts = fronts_of(runs, fronts, body);
+    fronts = fronts_of(runs, fronts, body.surface);
   }
   for (std::size_t r = 0; r < runs.size(); ++r)
     if (fronts[r].at.empty())

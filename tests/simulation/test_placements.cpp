@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <sstream>
 
 #include "cases.h"
 #include "kerf/check.h"
 #include "kerf/contact.h"
+#include "kerf/files.h"
 #include "kerf/pieces.h"
 #include "kerf/simulation.h"
 #include "simulation/placed_scene.h"
@@ -113,5 +115,35 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
     CHECK(here.energy < 2 * there.energy + least_energy);
     CHECK(double(there.work) < 2 * double(here.work));
     CHECK(double(here.work) < 2 * double(there.work));
+  }
+}
+
+// KERF_SCENES='out/halve.toml out/polyp.toml' KERF_FRAMES=16 test_simulation '[scenes]': scenes of
+// samples/scenes whose models exist; KERF_FRAMES: at most that many.
+TEST_CASE("scenes of files cross nothing, wherever they are", "[.scenes]") {
+  const char* paths = std::getenv("KERF_SCENES");
+  REQUIRE(paths);
+  const char* most = std::getenv("KERF_FRAMES");
+  std::istringstream words(paths);
+  for (std::string path; words >> path;) {
+    CutScene cut;
+    cut.about = path;
+    cut.scene = read_scene(path, {});
+    if (most) cut.scene.frames = std::min(cut.scene.frames, std::atoi(most));
+    std::vector<TriangleMesh> meshes;
+    for (const SceneBody& body : cut.scene.bodies) meshes.push_back(read_surface(body.mesh).mesh);
+    cut.models = place_models(cut.scene, std::move(meshes));
+    std::size_t pieces = 0;
+    for (const Placement& way : placements()) {
+      const CutScene moved = placed(cut, way);
+      INFO(moved.about);
+      const Outcome outcome = run(moved);
+      std::cout << moved.about << ": " << told(outcome) << std::endl;
+      CHECK(outcome.crossings == 0);
+      const std::size_t large = static_cast<std::size_t>(
+          std::count_if(outcome.volumes.begin(), outcome.volumes.end(), [](double v) { return v > 1e-3; }));
+      if (pieces == 0) pieces = large;
+      CHECK(large == pieces);
+    }
   }
 }

@@ -22,7 +22,7 @@ struct FrameFigures {
 /// The figures in the lines of frames.jsonl. Throws geo::InputError where a line is malformed.
 std::vector<FrameFigures> read_figures(const std::string& log);
 
-/// What faults are measured by.
+/// Figures of the bodies that faults are measured by.
 struct BodyFigures {
   double spacing = 0;       ///< mean, of the nodes, model units
   double least_energy = 0;  ///< J: what is below is noise of the solver

@@ -12,6 +12,7 @@ namespace geo {
 
 ThinMaterial find_thin_material(const TriangleMesh& solid, const NodeSet& nodes, double across) {
   constexpr std::size_t most_triangles = 4096;
+  constexpr double enough = 0.999;  // a spacing that is rounded to four digits suffices
   ThinMaterial thin;
   if (solid.triangles.empty() || nodes.size() == 0) return thin;
   const RegionTree tree(solid);
@@ -28,7 +29,7 @@ ThinMaterial find_thin_material(const TriangleMesh& solid, const NodeSet& nodes,
       const auto& [a, b, c] = tree.corners(t);
       const auto near = grid.nearest(nodes.position, (a + b + c) / 3, 1, ~0u, [](std::uint32_t) { return true; });
       const double spacing = nodes.spacing[near[0]];
-      places[i] = {.wall = wall_behind(tree, t, across * spacing), .spacing = spacing};
+      places[i] = {.wall = wall_behind(tree, t, enough * across * spacing), .spacing = spacing};
     }
   });
   double area = 0;

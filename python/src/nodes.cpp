@@ -67,6 +67,18 @@ NodeSet sampled(py::object model, const SampleArguments& arguments, py::object p
   return NodeSet(report.run([&](geo::Progress p) { return geo::sample_nodes(solid->mesh, options, p); }));
 }
 
+py::dict thin_material(const NodeSet& self, py::object model, double across) {
+  const auto solid = solid_argument(model, "model");
+  const auto thin = without_gil([&] { return geo::find_thin_material(solid->mesh, *self.nodes, across); });
+  py::dict found;
+  found["share"] = thin.share;
+  found["thickness"] = thin.thickness;
+  found["spacing"] = thin.spacing;
+  found["at"] = py::make_tuple(thin.at.x(), thin.at.y(), thin.at.z());
+  found["enough"] = thin.enough;
+  return found;
+}
+
 py::array array_of(const py::object& self, const std::vector<double> geo::NodeSet::*member) {
   const auto& values = (*self.cast<const NodeSet&>().nodes).*member;
   return view<double>(values.data(), {static_cast<py::ssize_t>(values.size())}, self);
@@ -163,7 +175,12 @@ void bind_nodes(py::module_& module) {
             py::gil_scoped_release release;
             return NodeSet(geo::read_nodes(path));
           },
-          py::arg("path"), "Reads PCD or PLY with radius, spacing and volume. Raises InputError.");
+          py::arg("path"), "Reads PCD or PLY with radius, spacing and volume. Raises InputError.")
+      .def("thin_material", &thin_material, py::arg("model"), py::arg("across") = 2.0,
+           "Walls of a model with fewer than `across` spacings of these nodes between their two sides, as a dict:\n"
+           "share, of the surface that such walls have, 0 to 1; thickness, below which half of them are, 0: none;\n"
+           "spacing, of the nodes there; at, a point in such a wall; enough, the spacing that is needed. Model units.\n"
+           "With fewer than two, a wall bends too little. Raises InputError for a model that is no solid.");
   module.def(
       "sample",
       [](py::object model, py::object spacing, py::object count, int levels, double jitter, double support,

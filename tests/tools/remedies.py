@@ -273,6 +273,20 @@ def coarse_models():
     run(f"{command} box.obj -o fine.ply")
     scene("s.toml", "[body]\nmesh = 'fine.ply'\nnodes = 300")
     assert "kerf-repair" not in run("kerf-sim s.toml -o finer")[1]
+    # A plate with one node across it; the spacing that the line names has two.
+    run("kerf-model plate --edge 0.1 -o plate.ply")
+    scene("p.toml", "gravity = [0, 0, 0]\n[body]\nmesh = 'plate.ply'\nspacing = 0.1")
+    spacing = said("kerf-sim p.toml -o plate", r"body.spacing = ([0-9.e-]+) is needed", 0)[1]
+    said("kerf-sim p.toml --strict -o strict", r"--strict: 1 thing not as asked for")
+    assert "is needed" not in run(f"kerf-sim p.toml --strict --set body.spacing={spacing} -o plate2")[1]
+
+
+@case(": states no unit; one is taken as a metre, and --unit gives another")
+def units():
+    run("kerf-model block --edge 0.5 -o block.ply && kerf-model front --around block.ply -o k.front")
+    run("kerf-crack block.ply --front k.front -o cut.ply")
+    option = said("kerf-pieces cut.ply -o pieces.usda", r"and (--unit) gives another", 0)[1]
+    assert "states no unit" not in run(f"kerf-crack block.ply --front k.front {option} mm -o mm.ply && kerf-pieces mm.ply -o mm.usda")[1]
 
 
 @case("; give another --address or --port")

@@ -39,9 +39,8 @@ std::string crossing_fault(const geo::Scene& scene, const std::vector<FrameFigur
     all += f.crossings;
   }
   if (all == 0) return {};
-  const std::string text =
-      tool::counted(all, "pair") + " of triangles cross, from frame " + std::to_string(first) + " on";
-  return scene.self_contact ? text : text + "; contact.self = true keeps them apart";
+  return tool::counted(all, "pair") + " of triangles cross, from frame " + std::to_string(first) + " on" +
+         (scene.self_contact ? "" : ", without contact.self");
 }
 
 std::string lag_fault(const std::vector<FrameFigures>& frames, double spacing) {
@@ -70,7 +69,7 @@ std::string energy_fault(const geo::Scene& scene, const std::vector<FrameFigures
     risen = energy > reference + energy_margin * scale ? risen + 1 : 0;
     if (risen == frames_of_rise)
       return "energy rises by itself, from " + tool::rounded(reference) + " to " + tool::rounded(energy) +
-             " J in frame " + std::to_string(f.frame) + "; a smaller time.step may help";
+             " J in frame " + std::to_string(f.frame);
   }
   return {};
 }

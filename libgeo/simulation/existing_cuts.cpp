@@ -32,13 +32,14 @@ struct SheetPlace {
   double height(const Vec3& p) const { return normal.dot(p - place); }
 };
 
-// Within `reach`; else at infinity.
-SheetPlace nearest_sheet(const Complex& surface, const Vec3& p, double reach) {
+// Within `reach`, of the cracks that `accept` takes by their numbers; else at infinity.
+template <class Accept>
+SheetPlace nearest_sheet(const Complex& surface, const Vec3& p, double reach, const Accept& accept) {
   std::vector<FaceId> near;
   surface.faces_near(Box3{p, p}.grown(reach), near);
   SheetPlace nearest;
   for (const FaceId f : near) {
-    if (surface.face(f).crack == 0) continue;
+    if (!accept(surface.face(f).crack)) continue;
     const auto [a, b, c] = surface.corners(f);
     const Vec3 place = closest_point_on_triangle(p, a, b, c);
     const double distance = (place - p).norm();
@@ -47,6 +48,8 @@ SheetPlace nearest_sheet(const Complex& surface, const Vec3& p, double reach) {
   }
   return nearest;
 }
+
+bool is_crack(std::int32_t crack) { return crack != 0; }
 
 // The marked index nearest to i; nothing where none is marked.
 std::optional<std::size_t> nearest_marked(const std::vector<std::uint8_t>& marked, std::size_t i) {
@@ -60,15 +63,7 @@ std::optional<std::size_t> nearest_marked(const std::vector<std::uint8_t>& marke
 }  // namespace
 
 double distance_from_crack(const Complex& surface, std::int32_t crack, const Vec3& point, double reach) {
-  std::vector<FaceId> near;
-  surface.faces_near(Box3{point, point}.grown(reach), near);
-  double least = std::numeric_limits<double>::infinity();
-  for (const FaceId f : near) {
-    if (surface.face(f).crack != crack) continue;
-    const auto [a, b, c] = surface.corners(f);
-    least = std::min(least, (closest_point_on_triangle(point, a, b, c) - point).norm());
-  }
-  return least < reach ? least : std::numeric_limits<double>::infinity();
+  return nearest_sheet(surface, point, reach, [crack](std::int32_t other) { return other == crack; }).distance;
 }
 
 double distance_from_front(const FrontState& front, const Vec3& point) {
@@ -143,7 +138,7 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
     is_in_air[i] = !is_inside(surface, place.position);
     if (is_in_air[i]) p.material = place.position;
     if (is_in_air[i] || !is_whole[i] || !cuts.contain(place.position, p.spacing)) continue;
-    const SheetPlace sheet = nearest_sheet(surface, place.position, own_reach * p.spacing);
+    const SheetPlace sheet = nearest_sheet(surface, place.position, own_reach * p.spacing, is_crack);
     const double height = any_reach * p.spacing;
     is_in_cut[i] = std::isfinite(sheet.distance);
     p.material = is_in_cut[i] ? sheet.over(height, p.material, 2 * height) : place.position;
@@ -164,7 +159,7 @@ void cross_first(const Complex& surface, const FrontState& front, std::span<cons
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Vec3& from = front.points[i].position;
     is_inner[i] = is_inside(surface, from);
-    const SheetPlace sheet = nearest_sheet(surface, from, 1.5 * any_reach * spacing[i]);
+    const SheetPlace sheet = nearest_sheet(surface, from, 1.5 * any_reach * spacing[i], is_crack);
     begins_in_cut[i] = is_inner[i] && std::isfinite(sheet.distance);
     if (begins_in_cut[i]) to[i] = from - 2 * sheet.height(from) * sheet.normal;
   }

@@ -4,13 +4,18 @@
 #include "kerf/crack.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "base/random.h"
 #include "crack/insert.h"
+#include "crack/near_edges.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
+#include "surface/delta_sum.h"
+#include "surface/edit_group.h"
 
 namespace geo {
 namespace {
@@ -136,25 +141,55 @@ Vec3 offset_from_faces(const Complex& complex, Vec3 p, double distance) {
   return p;
 }
 
+// What a strip snaps to.
+struct Snapping {
+  double reach;  // model units
+  enum class To { vertices, vertices_and_edges } to;
+};
+
 struct Step {
   CrackDelta delta;
   FrontState front;
 };
 
+// Snaps the strip to vertices of K. To snap it to edges, divides them where the strip passes, and
+// snaps to the new vertices. A strip that snaps has new edges, which may be near others. Adds what
+// it changes in K to `sum`; returns the number of vertices snapped to.
+std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, DeltaSum& sum) {
+  std::size_t count = snap_to_vertices(strip, complex, snapping.reach);
+  if (snapping.to == Snapping::To::vertices) return count;
+  // A round divides edges near those that the last one has made: these are few, and shorter.
+  constexpr int most_rounds = 3;
+  for (int round = 0; round < most_rounds; ++round) {
+    const ComplexEdit edit = crack::divide_near_edges(complex, strip, snapping.reach);
+    if (edit.empty()) break;
+    sum.add(complex.apply(edit));
+    count += snap_to_vertices(strip, complex, snapping.reach);
+  }
+  return count;
+}
+
 // One attempt. Throws GeometryError, K unchanged, when the guard refuses it.
-Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, double snap, double clearance,
-              CrackStats& stats) {
+Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, const Snapping& snapping,
+              double clearance, CrackStats& stats) {
   Stopwatch watch;
   Step result{{}, front};
   Strip strip = sweep(front, next);
-  stats.snapped += snap_to_vertices(strip, complex, snap);
+  DeltaSum sum;
+  Complex::EditGroup edits(complex);
+  stats.snapped += snap(strip, complex, snapping, sum);
   stats.near_seconds += watch.lap();
   crack::Arrangement arrangement(complex, strip);
   std::vector<VertexId> vertex;
-  result.delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats);
+  const CrackDelta delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats);
+  const bool is_divided = !sum.empty();
+  if (is_divided && delta.empty()) throw GeometryError("edges are divided where nothing is cut");
   watch.lap();
   advance_contacts(result.front, complex, strip, arrangement, vertex);
   stats.stitch_seconds += watch.lap();
+  sum.add(delta);
+  result.delta = is_divided ? sum.sum() : delta;
+  edits.keep();
   return result;
 }
 
@@ -180,6 +215,20 @@ void displace_front(FrontState& front, std::vector<Vec3>& target, double jitter,
       front.segments[(s + 1) % front.segments.size()].front().position = front.segments[s].back().position;
     front.points[end].position = front.segments[s].back().position;
   }
+}
+
+// The shares of the way that attempts to snap to edges go. A shorter step is in the plane of the
+// blade, while a displaced front leaves it: the sheet would be folded by less than nodes resolve.
+constexpr std::array<double, 4> shorter_ways = {1, 0.83, 0.71, 0.59};
+
+std::vector<Vec3> shortened(const FrontState& front, const std::vector<Vec3>& next, double share) {
+  if (share == 1) return next;
+  std::vector<Vec3> target;
+  for (std::size_t i = 0; i < next.size(); ++i) {
+    const Vec3& from = front.points[i].position;
+    target.push_back(next[i] == from ? from : Vec3(from + share * (next[i] - from)));
+  }
+  return target;
 }
 
 // The front as the step starts: contacts updated, and before the first step its free points off the
@@ -244,21 +293,34 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   for (std::size_t i = 0; i < offset_next.size(); ++i)
     if (offset_next[i] != old.points[i].position)
       offset_next[i] = offset_from_faces(complex, offset_next[i], options.face_offset * size);
-  for (int number = 0; number <= options.attempts; ++number) {
-    const crack::Attempt attempt = crack::attempt_at(number, options, size);
-    std::vector<Vec3> target = offset_next;
-    FrontState from = old;
-    if (number > 0) displace_front(from, target, attempt.jitter, random);
+  const auto attempt = [&](const FrontState& from, const std::vector<Vec3>& target, const Snapping& snapping,
+                           double clearance) -> std::optional<CrackDelta> {
     ++done.attempts;
     try {
-      Step result = try_step(complex, from, target, options.snap * size, attempt.clearance, done);
+      Step result = try_step(complex, from, target, snapping, clearance, done);
       ++result.front.step;
       front = std::move(result.front);
       if (stats) *stats += done;
       return std::move(result.delta);
     } catch (const GeometryError& e) {
       reason = e.what();
+      return {};
     }
+  };
+  if (options.snap_edges > 0) {
+    const Snapping to_edges{.reach = std::max(options.snap, options.snap_edges) * size,
+                            .to = Snapping::To::vertices_and_edges};
+    for (const double share : shorter_ways)
+      if (auto delta = attempt(old, shortened(old, offset_next, share), to_edges, options.clearance * size))
+        return std::move(*delta);
+  }
+  const Snapping to_vertices{.reach = options.snap * size, .to = Snapping::To::vertices};
+  for (int number = 0; number <= options.attempts; ++number) {
+    const auto [jitter, clearance] = crack::attempt_at(number, options, size);
+    std::vector<Vec3> target = offset_next;
+    FrontState from = old;
+    if (number > 0) displace_front(from, target, jitter, random);
+    if (auto delta = attempt(from, target, to_vertices, clearance)) return std::move(*delta);
   }
   if (stats) *stats += done;
   throw GeometryError("step " + std::to_string(front.step + 1) + " of the front cannot be made: " + reason);

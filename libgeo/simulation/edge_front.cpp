@@ -107,9 +107,13 @@ void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {
 }
 
 EdgeFront part_of(const EdgeFront& edge, double from, double to) {
-  const auto first = static_cast<std::size_t>(std::lower_bound(edge.at.begin(), edge.at.end(), from) - edge.at.begin());
-  const auto end = static_cast<std::size_t>(std::upper_bound(edge.at.begin(), edge.at.end(), to) - edge.at.begin());
+  const auto& points = edge.front.points;
+  auto first = static_cast<std::size_t>(std::lower_bound(edge.at.begin(), edge.at.end(), from) - edge.at.begin());
+  auto end = static_cast<std::size_t>(std::upper_bound(edge.at.begin(), edge.at.end(), to) - edge.at.begin());
   EdgeFront part;
+  if (end <= first) return part;
+  if (first > 0 && points[first].id.valid() && !points[first - 1].id.valid()) --first;
+  if (end < points.size() && points[end - 1].id.valid() && !points[end].id.valid()) ++end;
   if (end < first + 2) return part;
   const auto cut = [](const auto& all, std::size_t a, std::size_t b) {
     return std::decay_t<decltype(all)>(all.begin() + static_cast<std::ptrdiff_t>(a),

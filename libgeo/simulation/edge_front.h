@@ -50,8 +50,9 @@ bool rests(const FrontState& front, std::span<const Vec3> mapped, std::span<cons
 /// with a neighbour.
 void collapse(EdgeFront& edge, std::span<const EdgePoint> next);
 
-/// The points of a front with parameters in [from, to]; an empty front where there are fewer than
-/// two.
+/// The points of a front with parameters in [from, to], and the point in air beside an end that is
+/// in the material: no material stays whole between two parts. An empty front where there are fewer
+/// than two.
 EdgeFront part_of(const EdgeFront& edge, double from, double to);
 /// One front of two, the parameters of `a` below those of `b`; it keeps the crack number of `a`.
 EdgeFront joined(EdgeFront a, const EdgeFront& b);

@@ -24,6 +24,10 @@ constexpr double longest_segment = 2;
 // a run.
 constexpr double wall_accuracy = 0.05;
 
+// Longest segment beside an existing cut, in spacings: shorter than an edge is in a cut of which a
+// run counts (see CutLeaver).
+constexpr double longest_beside_cut = 0.5;
+
 // A point of the edge, mapped into the material.
 struct Sample {
   double at = 0;  // edge parameter
@@ -78,13 +82,22 @@ class EdgeSampler {
     const bool straight = a.within && b.within && middle.within && (!meets_cut || length < wall_accuracy * spacing) &&
                           (b.material - a.material).norm() <= longest_segment * spacing &&
                           (middle.material - 0.5 * (a.material + b.material)).norm() <= most_deviation * spacing;
-    if (straight) return;
-    refine(a, middle, depth - 1, out);
-    out.push_back(middle);
-    refine(middle, b, depth - 1, out);
+    if (straight && !passes_cut(a, b, length, spacing)) return;
+    std::vector<Sample> between;
+    refine(a, middle, depth - 1, between);
+    between.push_back(middle);
+    refine(middle, b, depth - 1, between);
+    const auto is_off = [](const Sample& s) { return s.is_in_cut || !s.within; };
+    if (!straight || std::any_of(between.begin(), between.end(), is_off))
+      out.insert(out.end(), between.begin(), between.end());
   }
 
  private:
+  // Whether a cut may lie between two samples that are in none.
+  bool passes_cut(const Sample& a, const Sample& b, double length, double spacing) const {
+    return length > longest_beside_cut * spacing && cuts_.may_contain_between(a.material, b.material, spacing);
+  }
+
   const InverseDeformation& map_;
   const Body& body_;
   const Blade& blade_;

@@ -104,6 +104,15 @@ bool ExistingCuts::contain(const Vec3& place, double spacing) const {
   return nearest_own < own_reach * spacing && !is_ahead(place, nearest_own);
 }
 
+bool ExistingCuts::may_contain_between(const Vec3& from, const Vec3& to, double spacing) const {
+  if (surface_.crack_count() == 0) return false;
+  Box3 box{from, from};
+  box.add(to);
+  std::vector<FaceId> near;
+  surface_.faces_near(box.grown(any_reach * spacing), near);
+  return std::any_of(near.begin(), near.end(), [&](FaceId f) { return surface_.face(f).crack != 0; });
+}
+
 bool ExistingCuts::is_ahead(const Vec3& place, double distance) const {
   return std::any_of(fronts_.begin(), fronts_.end(), [&](const EdgeFront& edge) {
     return has_contact(edge.front) && distance_from_front(edge.front, place) <= 2 * distance;

@@ -35,6 +35,8 @@ class ExistingCuts {
   ///   from the blade's fronts that can go on, ahead of which the material is whole.
   /// `spacing`: of the nodes there, model units.
   bool contain(const Vec3& place, double spacing) const;
+  /// Whether boxes do not exclude that contain() holds between two places.
+  bool may_contain_between(const Vec3& from, const Vec3& to, double spacing) const;
   /// Whether a front that can go on has this edge parameter. It holds its points in the cut by
   /// itself (edge_retreat.h).
   bool can_go_on(double at) const;

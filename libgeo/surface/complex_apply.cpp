@@ -6,6 +6,7 @@
 
 #include "kerf/error.h"
 #include "surface/complex_impl.h"
+#include "surface/edit_group.h"
 #include "surface/radial_edge.h"
 
 namespace geo {
@@ -17,7 +18,6 @@ class Complex::Commit {
   Commit(Complex& complex, const ComplexEdit& edit)
       : k_(complex),
         edit_(edit),
-        log_(complex.impl_->log),
         old_faces_(complex.face_count()),
         old_vertices_(complex.vertex_count()),
         removed_(edit.removed_faces) {}
@@ -35,6 +35,9 @@ class Complex::Commit {
     rebuild_fans();
     return std::move(delta_);
   }
+
+  // What run() overwrote.
+  Impl::UndoLog log() { return std::move(log_); }
 
  private:
   // An edge that gains a face, or loses one (then the face is invalid).
@@ -158,7 +161,7 @@ class Complex::Commit {
   }
 
   void begin_undo_log() {
-    log_ = {true, old_vertices_, old_faces_, k_.surface_vertex_count(), k_.crack_count_, removed_, {}, {}, {}};
+    log_ = {old_vertices_, old_faces_, k_.surface_vertex_count(), k_.crack_count_, removed_, {}, {}, {}};
     delta_.removed_faces = removed_;
   }
 
@@ -271,7 +274,7 @@ class Complex::Commit {
 
   Complex& k_;
   const ComplexEdit& edit_;
-  Impl::UndoLog& log_;
+  Impl::UndoLog log_;
   const std::uint32_t old_faces_, old_vertices_;
   std::vector<FaceId> removed_;  // ascending
   std::vector<PlannedCycle> cycles_;
@@ -281,33 +284,60 @@ class Complex::Commit {
   CrackDelta delta_;
 };
 
-CrackDelta Complex::apply(const ComplexEdit& edit) { return Commit(*this, edit).run(); }
+CrackDelta Complex::apply(const ComplexEdit& edit) {
+  Commit commit(*this, edit);
+  CrackDelta delta = commit.run();
+  if (impl_->next != Impl::Next::further_of_group) impl_->logs.clear();
+  if (impl_->next == Impl::Next::first_of_group) impl_->next = Impl::Next::further_of_group;
+  impl_->logs.push_back(commit.log());
+  return delta;
+}
 
 void Complex::undo() {
-  auto& log = impl_->log;
-  if (!log.possible) throw GeometryError("there is no edit to undo");
-  for (std::uint32_t f = log.faces; f < faces_.size(); ++f) {
-    impl_->index.erase(f);
-    unlink_corners(FaceId(f));
-    --live_faces_;
+  if (impl_->logs.empty()) throw GeometryError("there is no edit to undo");
+  for (auto log = impl_->logs.rbegin(); log != impl_->logs.rend(); ++log) {
+    for (std::uint32_t f = log->faces; f < faces_.size(); ++f) {
+      impl_->index.erase(f);
+      unlink_corners(FaceId(f));
+      --live_faces_;
+    }
+    points_.resize(log->vertices);
+    first_corner_.resize(log->vertices);
+    impl_->marks.resize(log->vertices);
+    faces_.resize(log->faces);
+    radial_.resize(std::size_t(3) * log->faces);
+    next_corner_.resize(std::size_t(3) * log->faces);
+    corner_vertex_.resize(std::size_t(6) * log->faces);
+    site_.resize(log->surface_vertices);
+    fan_side_.resize(log->surface_vertices);
+    fan_corner_.resize(log->surface_vertices);
+    for (const FaceId f : log->removed) {
+      faces_[f.index()].alive = true;
+      link_corners(f);
+      const auto c = corners(f);
+      impl_->index.insert(f.value, box_of(c[0], c[1], c[2]));
+      ++live_faces_;
+    }
+    for (const auto& [at, next] : log->radial) radial_[at] = next;
+    for (const auto& [at, id] : log->corners) corner_vertex_[at] = id;
+    for (const auto& fan : log->fans) {
+      site_[fan.v.index()] = fan.site;
+      fan_side_[fan.v.index()] = fan.side;
+      fan_corner_[fan.v.index()] = fan.corner;
+    }
+    crack_count_ = log->cracks;
   }
-  points_.resize(log.vertices), first_corner_.resize(log.vertices), impl_->marks.resize(log.vertices);
-  faces_.resize(log.faces), radial_.resize(std::size_t(3) * log.faces), next_corner_.resize(std::size_t(3) * log.faces);
-  corner_vertex_.resize(std::size_t(6) * log.faces);
-  site_.resize(log.surface_vertices), fan_side_.resize(log.surface_vertices), fan_corner_.resize(log.surface_vertices);
-  for (const FaceId f : log.removed) {
-    faces_[f.index()].alive = true;
-    link_corners(f);
-    const auto c = corners(f);
-    impl_->index.insert(f.value, box_of(c[0], c[1], c[2]));
-    ++live_faces_;
-  }
-  for (const auto& [at, next] : log.radial) radial_[at] = next;
-  for (const auto& [at, id] : log.corners) corner_vertex_[at] = id;
-  for (const auto& fan : log.fans)
-    site_[fan.v.index()] = fan.site, fan_side_[fan.v.index()] = fan.side, fan_corner_[fan.v.index()] = fan.corner;
-  crack_count_ = log.cracks;
-  log = {};
+  impl_->logs.clear();
+}
+
+Complex::EditGroup::EditGroup(Complex& complex) : complex_(complex) {
+  complex_.impl_->next = Impl::Next::first_of_group;
+}
+
+Complex::EditGroup::~EditGroup() {
+  const bool is_changed = complex_.impl_->next == Impl::Next::further_of_group;
+  complex_.impl_->next = Impl::Next::single;
+  if (is_changed && !is_kept_) complex_.undo();
 }
 
 }  // namespace geo

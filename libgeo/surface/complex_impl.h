@@ -13,7 +13,7 @@ namespace geo {
 
 /// Members of Complex that no inline accessor reads.
 struct Complex::Impl {
-  /// The state that the last commit overwrote, for undo().
+  /// The state that a commit overwrote, for undo().
   struct UndoLog {
     /// A vertex of S_A as it was.
     struct Fan {
@@ -22,7 +22,6 @@ struct Complex::Impl {
       Side side;
       std::uint8_t corner;
     };
-    bool possible = false;
     std::uint32_t vertices, faces, surface_vertices;  ///< counts before the commit
     std::int32_t cracks;
     std::vector<FaceId> removed;
@@ -34,7 +33,9 @@ struct Complex::Impl {
   TriangleIndex index;               ///< living faces
   std::vector<std::uint32_t> marks;  ///< per vertex: the last commit that touched it
   std::uint32_t epoch = 0;           ///< number of the last commit
-  UndoLog log;
+  std::vector<UndoLog> logs;         ///< of the last commit, or of the commits of the last group
+  /// What the next commit is: the first of a group follows no other.
+  enum class Next { single, first_of_group, further_of_group } next = Next::single;
 };
 
 /// Groups the sides at a vertex of K into fans and gives each fan a vertex of S_A. Holds scratch

@@ -237,4 +237,14 @@ CutScene placed(const CutScene& cut, const Placement& way) {
   return result;
 }
 
+NodeSet placed(const NodeSet& nodes, const Placement& way) {
+  NodeSet result = nodes;
+  const Placer place(way);
+  for (Vec3& p : result.position) p = place.point(p);
+  for (double& r : result.radius) r *= way.scale;
+  for (double& h : result.spacing) h *= way.scale;
+  for (double& v : result.volume) v *= way.scale * way.scale * way.scale;
+  return result;
+}
+
 }  // namespace geo

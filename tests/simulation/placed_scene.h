@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "kerf/nodes.h"
 #include "kerf/scene.h"
 #include "kerf/simulation.h"
 
@@ -43,5 +44,8 @@ CutScene random_cut_scene(std::uint64_t seed);
 /// The same scene, placed. Times stay: velocities and accelerations scale with lengths, moduli and
 /// strengths with their square, and toughness with the power 2.5.
 CutScene placed(const CutScene& cut, const Placement& way);
+
+/// Nodes, placed.
+NodeSet placed(const NodeSet& nodes, const Placement& way);
 
 }  // namespace geo

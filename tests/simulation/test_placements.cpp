@@ -21,25 +21,39 @@ using namespace geo;
 
 namespace {
 
+constexpr double same_energy = 1.25;   // a bridge is as thin as the step in which the cut passes it
 constexpr double least_energy = 1e-6;  // over modulus and volume: a strain of a thousandth
+constexpr std::size_t least_work =
+    200;  // a cut along mesh lines divides nothing, one beside them a few triangles a step
 
 // Results that do not depend on the place of a scene, lengths in units of its scale.
 struct Outcome {
   std::vector<double> volumes;  // of pieces, descending, over that of all
   std::size_t crumbs = 0, crossings = 0, refused = 0;
-  double energy = 0;     // largest elastic energy of a frame, over Young's modulus and volume
+  // The largest elastic energy of a frame in which the body is one piece, over Young's modulus and
+  // volume. Afterwards it depends on which piece has a node that a grip holds.
+  double energy = 0;
   std::size_t work = 0;  // Newton steps and triangles cut
 };
 
-Outcome run(const CutScene& cut) {
-  Simulation sim(cut.scene, cut.models);
+// A scene of one body at rest, with these nodes.
+Simulation simulation_of(const CutScene& cut, NodeSet nodes) {
+  Body body = build_body(Complex::from_skin(cut.models.all), std::move(nodes), {.k = cut.scene.k});
+  RunState state;
+  state.motion.displacement.assign(body.nodes.size(), Vec3::Zero());
+  state.motion.velocity.assign(body.nodes.size(), Vec3::Zero());
+  state.fronts.resize(cut.scene.blades.size());
+  return Simulation(cut.scene, std::move(body), std::move(state));
+}
+
+Outcome run(const CutScene& cut, Simulation sim) {
   Outcome outcome;
   FrameStats total;
   for (int f = 0; f < cut.scene.frames; ++f) {
     const FrameStats stats = sim.advance_frame();
     total += stats;
     outcome.crossings += count_crossings(sim.surface());
-    outcome.energy = std::max(outcome.energy, stats.energy);
+    if (find_pieces(sim.body().surface).volume.size() == 1) outcome.energy = std::max(outcome.energy, stats.energy);
   }
   outcome.refused = total.refused;
   outcome.work = total.newton + total.split.crack.triangles_cut;
@@ -54,11 +68,11 @@ Outcome run(const CutScene& cut) {
   return outcome;
 }
 
-// Whether two lists of volumes are of the same pieces. Nodes of a mirrored model are elsewhere, and
-// the model hangs otherwise while it is cut, by less than a fiftieth of its size. Pieces that are
-// smaller than a twentieth of it in each direction may be in one list alone.
+// Whether two lists of volumes are of the same pieces, but for what depends on the order of sums:
+// which of two faces a cut meets first. Pieces that are smaller than a twentieth of the model in
+// each direction may be in one list alone.
 bool are_same_pieces(const std::vector<double>& a, const std::vector<double>& b) {
-  constexpr double same = 0.02;
+  constexpr double same = 0.005;
   constexpr double small = 1e-4;
   for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
     const double va = i < a.size() ? a[i] : 0, vb = i < b.size() ? b[i] : 0;
@@ -93,13 +107,19 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
   const auto ways = placements();
   std::optional<std::uint64_t> scene;  // that `here` is of
   Outcome here;
+  NodeSet nodes;
   for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
     const CutScene cut = random_cut_scene(seed / ways.size());
     const CutScene moved = placed(cut, ways[seed % ways.size()]);
     INFO("KERF_CASE=" << seed << ": " << moved.about);
-    if (scene != seed / ways.size()) here = run(cut);
+    if (scene != seed / ways.size()) {
+      // The same nodes everywhere: those that a mirrored model is sampled with are elsewhere, and
+      // grips hold others.
+      nodes = begin_run(cut.scene, cut.models).body.nodes;
+      here = run(cut, simulation_of(cut, nodes));
+    }
     scene = seed / ways.size();
-    const Outcome there = run(moved);
+    const Outcome there = run(moved, simulation_of(moved, placed(nodes, ways[seed % ways.size()])));
     INFO("here:  " << told(here) << "\nthere: " << told(there));
     if (std::getenv("KERF_TELL"))
       std::cout << seed << " " << moved.about << "\n   " << told(here) << "\n   " << told(there) << std::endl;
@@ -111,10 +131,10 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
       CHECK(specks(here) == 0);
       CHECK(specks(there) == 0);
     }
-    CHECK(there.energy < 2 * here.energy + least_energy);
-    CHECK(here.energy < 2 * there.energy + least_energy);
-    CHECK(double(there.work) < 2 * double(here.work));
-    CHECK(double(here.work) < 2 * double(there.work));
+    CHECK(there.energy < same_energy * here.energy + least_energy);
+    CHECK(here.energy < same_energy * there.energy + least_energy);
+    CHECK(there.work < 2 * here.work + least_work);
+    CHECK(here.work < 2 * there.work + least_work);
   }
 }
 
@@ -137,7 +157,7 @@ TEST_CASE("scenes of files cross nothing, wherever they are", "[.scenes]") {
     for (const Placement& way : placements()) {
       const CutScene moved = placed(cut, way);
       INFO(moved.about);
-      const Outcome outcome = run(moved);
+      const Outcome outcome = run(moved, Simulation(moved.scene, moved.models));
       std::cout << moved.about << ": " << told(outcome) << std::endl;
       CHECK(outcome.crossings == 0);
       const std::size_t large = static_cast<std::size_t>(

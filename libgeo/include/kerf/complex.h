@@ -210,6 +210,7 @@ class Complex {
   /// assigns. Cost follows the edit. Throws GeometryError when no edit is left to revert (one at
   /// most is).
   void undo();
+  class EditGroup;  // edits that count as one; see surface/edit_group.h
   /// The edit that turns this complex into `other`, which must have grown from it (same ids for the
   /// same vertices). Throws InputError when it has not.
   ComplexEdit difference(const Complex& other) const;

@@ -21,6 +21,16 @@ Mat3 safe_inverse(const Mat3& f) { return f.determinant() > 0.05 ? Mat3(f.invers
 // A place in the material continues another within this distance, in spacings.
 constexpr double continuing_distance = 4;
 
+// Triangles lower than this share of their longest side have no say: barycentric coordinates are
+// off by 2⁻⁵² over its square, 1e-6. Their neighbours across that side know as much.
+constexpr double lowest_triangle = 0x1p-16;
+
+bool is_sliver(const Vec3 (&t)[3]) {
+  const Vec3 a = t[1] - t[0], b = t[2] - t[1], c = t[0] - t[2];
+  const double longest = std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()});
+  return a.cross(b).norm() <= lowest_triangle * longest;
+}
+
 // Smoothstep t² (3 − 2 t), from 1 at a to 0 at b.
 double fade(double x, double a, double b) {
   const double t = std::clamp((b - x) / (b - a), 0.0, 1.0);
@@ -138,6 +148,7 @@ Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, doub
     if (body_.surface.face(face).crack != 0 || !is_included(face)) continue;
     Vec3 t[3];
     for (int k = 0; k < 3; ++k) t[k] = deformed_vertex(body_.surface.surface_vertex({face, 0}, k), cache);
+    if (is_sliver(t)) continue;
     const Vec3 on = closest_point_on_triangle(y, t[0], t[1], t[2]), b = barycentric(on, t[0], t[1], t[2]);
     const double d = (on - y).norm();
     if (d >= range) continue;

@@ -17,6 +17,10 @@ namespace {
 // sheet is near all edges of that, and each division makes more of them.
 constexpr std::size_t most_places_per_triangle = 2;
 
+// Places are at least so many times the reach apart. Nearer ones would move the strip to and fro by
+// as much as it is long between them.
+constexpr double places_apart = 3;
+
 // An edge of K, a < b.
 struct Edge {
   VertexId a, b;
@@ -85,14 +89,17 @@ class NearEdges {
     if (parallel > 0) places_[edge].push_back((u.dot(v) * v.dot(w) - u.dot(w) * v.squaredNorm()) / parallel);
   }
 
-  void thin_out(const Edge& edge, std::vector<double>& at) const {
-    const double least = reach_ / (complex_.point(edge.b) - complex_.point(edge.a)).norm();
+  // Leaves out places near each other, of any edge, and near the edge's ends.
+  void thin_out(const Edge& edge, std::vector<double>& at) {
+    const Vec3 &a = complex_.point(edge.a), &b = complex_.point(edge.b);
+    const double apart = places_apart * reach_;
     std::sort(at.begin(), at.end());
-    double last = 0;
     std::erase_if(at, [&](double t) {
-      const bool is_close = !(t - last > least && 1 - t > least);
-      if (!is_close) last = t;
-      return is_close;
+      const Vec3 place = a + t * (b - a);
+      const auto is_near = [&](const Vec3& p) { return (p - place).norm() < apart; };
+      if (is_near(a) || is_near(b) || std::any_of(taken_.begin(), taken_.end(), is_near)) return true;
+      taken_.push_back(place);
+      return false;
     });
   }
 
@@ -100,6 +107,7 @@ class NearEdges {
   const Strip& strip_;
   double reach_;
   std::map<Edge, std::vector<double>> places_;
+  std::vector<Vec3> taken_;  // places that are not left out
 };
 
 // Divides edges of K, and the faces at them, in one edit.

@@ -114,9 +114,19 @@ void advance_contacts(FrontState& front, const Complex& complex, const Strip& st
     if (segment.back().position != q) segment.push_back({q, VertexId()});
     front.segments[s] = std::move(segment);
   }
+  // A segment between two points at one place lies on no strip edge: its neighbours know the vertex.
   for (std::size_t s = 0; s < count; ++s) {
-    points[s].id = front.segments[s].front().id;
+    if (front.segments[s].front().id.valid()) points[s].id = front.segments[s].front().id;
     if (front.segments[s].back().id.valid()) points[(s + 1) % n].id = front.segments[s].back().id;
+  }
+  for (std::size_t s = 0; s < count; ++s) {
+    if (points[s].position == points[(s + 1) % n].position) {
+      const VertexId id = points[s].id.valid() ? points[s].id : points[(s + 1) % n].id;
+      points[s].id = id;
+      points[(s + 1) % n].id = id;
+    }
+    front.segments[s].front().id = points[s].id;
+    front.segments[s].back().id = points[(s + 1) % n].id;
   }
   front.points = std::move(points);
 }

@@ -21,11 +21,26 @@ constexpr std::size_t most_places_per_triangle = 2;
 // as much as it is long between them.
 constexpr double places_apart = 3;
 
-// An edge of K, a < b.
+// Coordinates order vertices: ids of a complex that was read back are others.
+bool is_before(const Vec3& p, const Vec3& q) {
+  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+}
+
+// An edge of K, from the end that is before the other.
 struct Edge {
   VertexId a, b;
-  auto operator<=>(const Edge&) const = default;
+  Vec3 from, to;
+
+  bool operator<(const Edge& other) const {
+    return from != other.from ? is_before(from, other.from) : is_before(to, other.to);
+  }
+  bool operator==(const Edge& other) const { return a == other.a && b == other.b; }
 };
+
+Edge edge_between(const Complex& complex, VertexId a, VertexId b) {
+  if (is_before(complex.point(b), complex.point(a))) std::swap(a, b);
+  return {.a = a, .b = b, .from = complex.point(a), .to = complex.point(b)};
+}
 
 // The parameter of the point of a segment closest to p, in 0 … 1.
 double parameter_near(const Vec3& p, const Vec3& from, const Vec3& to) {
@@ -61,8 +76,7 @@ class NearEdges {
     std::vector<Edge> edges;
     for (auto f = strip_.near_begin[t]; f < strip_.near_begin[t + 1]; ++f) {
       const auto& v = complex_.face(strip_.near[f]).v;
-      for (std::size_t k = 0; k < 3; ++k)
-        edges.push_back({std::min(v[k], v[(k + 1) % 3]), std::max(v[k], v[(k + 1) % 3])});
+      for (std::size_t k = 0; k < 3; ++k) edges.push_back(edge_between(complex_, v[k], v[(k + 1) % 3]));
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -74,13 +88,13 @@ class NearEdges {
   }
 
   void add_near_point(const Edge& edge, const Vec3& p) {
-    const Vec3 &a = complex_.point(edge.a), &b = complex_.point(edge.b);
+    const Vec3 &a = edge.from, &b = edge.to;
     if (p != a && p != b && is_near_segment(p, a, b)) places_[edge].push_back(parameter_near(p, a, b));
   }
 
   // An edge of the strip from p to q.
   void add_near_edge(const Edge& edge, const Vec3& p, const Vec3& q) {
-    const Vec3 &a = complex_.point(edge.a), &b = complex_.point(edge.b);
+    const Vec3 &a = edge.from, &b = edge.to;
     if (is_near_segment(p, a, b) || is_near_segment(q, a, b)) return;
     if (is_near_segment(a, p, q) || is_near_segment(b, p, q)) return;
     if (distance_between_segments(a, b, p, q) > reach_) return;
@@ -91,7 +105,7 @@ class NearEdges {
 
   // Leaves out places near each other, of any edge, and near the edge's ends.
   void thin_out(const Edge& edge, std::vector<double>& at) {
-    const Vec3 &a = complex_.point(edge.a), &b = complex_.point(edge.b);
+    const Vec3 &a = edge.from, &b = edge.to;
     const double apart = places_apart * reach_;
     std::sort(at.begin(), at.end());
     std::erase_if(at, [&](double t) {
@@ -117,7 +131,7 @@ class EdgeDivider {
 
   // At parameters, ascending.
   void divide(const Edge& edge, const std::vector<double>& at) {
-    const Vec3 &a = complex_.point(edge.a), &b = complex_.point(edge.b);
+    const Vec3 &a = edge.from, &b = edge.to;
     std::vector<VertexId> chain{edge.a};
     for (const double t : at) {
       chain.push_back(VertexId(complex_.vertex_count() + static_cast<std::uint32_t>(edit_.new_vertices.size())));
@@ -170,6 +184,8 @@ class EdgeDivider {
       for (std::uint32_t n = 0; n < edit_.new_faces.size(); ++n)
         if (edit_.new_faces[n].parent == f && edge_of(edit_.new_faces[n].v, order.a, order.b) < 3)
           order.faces.push_back(FaceId(complex_.face_count() + n));
+    // faces_around() has them about the direction from the lower id to the higher one.
+    if (chain.back() < chain.front()) std::reverse(order.faces.begin(), order.faces.end());
     edit_.radial_orders.push_back(std::move(order));
   }
 

@@ -110,7 +110,8 @@ class Snapper {
   }
 
  private:
-  // Vertices of K within reach of a triangle's plane and box, ascending; few are.
+  // Vertices of K within reach of a triangle's plane and box, few, ordered by coordinates: ids of a
+  // complex that was read back are others.
   std::vector<VertexId> candidates() const {
     std::vector<VertexId> vertices;
     for (std::size_t t = 0; t < strip_.triangles.size(); ++t) {
@@ -124,7 +125,10 @@ class Snapper {
           if (std::abs(n.dot(q - p0)) <= limit && Box3{q, q}.meets(box)) vertices.push_back(v);
         }
     }
-    std::sort(vertices.begin(), vertices.end());
+    std::sort(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) {
+      const Vec3 &p = complex_.point(a), &q = complex_.point(b);
+      return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
+    });
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
   }

@@ -114,7 +114,7 @@ void advance_contacts(FrontState& front, const Complex& complex, const Strip& st
     if (segment.back().position != q) segment.push_back({q, VertexId()});
     front.segments[s] = std::move(segment);
   }
-  // A segment between two points at one place lies on no strip edge: its neighbours know the vertex.
+  // A segment between two points at one place is on no strip edge: its neighbours know the vertex.
   for (std::size_t s = 0; s < count; ++s) {
     if (front.segments[s].front().id.valid()) points[s].id = front.segments[s].front().id;
     if (front.segments[s].back().id.valid()) points[(s + 1) % n].id = front.segments[s].back().id;
@@ -151,7 +151,7 @@ Vec3 offset_from_faces(const Complex& complex, Vec3 p, double distance) {
   return p;
 }
 
-// What a strip snaps to.
+// How far a strip snaps, and to which features of K.
 struct Snapping {
   double reach;  // model units
   enum class To { vertices, vertices_and_edges } to;

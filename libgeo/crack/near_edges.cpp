@@ -17,7 +17,7 @@ namespace {
 // sheet is near all edges of that, and each division makes more of them.
 constexpr std::size_t most_places_per_triangle = 2;
 
-// Places are at least so many times the reach apart. Nearer ones would move the strip to and fro by
+// Least distance of places, in reaches. Nearer ones would move the strip to and fro by
 // as much as it is long between them.
 constexpr double places_apart = 3;
 
@@ -218,9 +218,9 @@ ComplexEdit divide_near_edges(const Complex& complex, const Strip& strip, double
   std::size_t count = 0;
   for (const auto& [edge, at] : places) count += at.size();
   if (count > most_places_per_triangle * strip.triangles.size()) return {};
-  EdgeDivider divider(complex);
-  for (const auto& [edge, at] : places) divider.divide(edge, at);
-  ComplexEdit edit = divider.edit();
+  EdgeDivider edges(complex);
+  for (const auto& [edge, at] : places) edges.divide(edge, at);
+  ComplexEdit edit = edges.edit();
   if (edit.empty() || !is_valid(complex, edit)) return {};
   return edit;
 }

@@ -36,7 +36,7 @@ class Complex::Commit {
     return std::move(delta_);
   }
 
-  // What run() overwrote.
+  // The state that run() overwrote.
   Impl::UndoLog log() { return std::move(log_); }
 
  private:

@@ -34,7 +34,7 @@ struct Complex::Impl {
   std::vector<std::uint32_t> marks;  ///< per vertex: the last commit that touched it
   std::uint32_t epoch = 0;           ///< number of the last commit
   std::vector<UndoLog> logs;         ///< of the last commit, or of the commits of the last group
-  /// What the next commit is: the first of a group follows no other.
+  /// The kind of the next commit: the first of a group follows no other.
   enum class Next { single, first_of_group, further_of_group } next = Next::single;
 };
 

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "crack/insert.h"
 #include "crack/near_edges.h"
+#include "crack/specks.h"
 #include "geometry/distance.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
@@ -155,6 +156,7 @@ Vec3 offset_from_faces(const Complex& complex, Vec3 p, double distance) {
 struct Snapping {
   double reach;  // model units
   enum class To { vertices, vertices_and_edges } to;
+  double thickness;  // model units; an attempt that cuts off a speck thinner than this fails
 };
 
 struct Step {
@@ -192,6 +194,8 @@ Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>
   crack::Arrangement arrangement(complex, strip);
   std::vector<VertexId> vertex;
   const CrackDelta delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats);
+  if (snapping.thickness > 0 && crack::leaves_speck(complex, delta, snapping.thickness))
+    throw GeometryError("a speck would come off");
   const bool is_divided = !sum.empty();
   if (is_divided && delta.empty()) throw GeometryError("edges are divided where nothing is cut");
   watch.lap();
@@ -319,14 +323,18 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
   };
   if (options.snap_edges > 0) {
     const Snapping to_edges{.reach = std::max(options.snap, options.snap_edges) * size,
-                            .to = Snapping::To::vertices_and_edges};
+                            .to = Snapping::To::vertices_and_edges,
+                            .thickness = options.snap_edges * size};
     for (const double share : shorter_ways)
       if (auto delta = attempt(old, shortened(old, offset_next, share), to_edges, options.clearance * size))
         return std::move(*delta);
   }
-  const Snapping to_vertices{.reach = options.snap * size, .to = Snapping::To::vertices};
   for (int number = 0; number <= options.attempts; ++number) {
     const auto [jitter, clearance] = crack::attempt_at(number, options, size);
+    // The attempts that insist on the clearance insist on no specks, too.
+    const Snapping to_vertices{.reach = options.snap * size,
+                               .to = Snapping::To::vertices,
+                               .thickness = clearance > 0 ? options.snap_edges * size : 0};
     std::vector<Vec3> target = offset_next;
     FrontState from = old;
     if (number > 0) displace_front(from, target, jitter, random);

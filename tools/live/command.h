@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include <kerf/vec.h>
 
@@ -30,6 +31,10 @@ struct Want {
   std::optional<bool> nodes, stress;
   bool graph = false;
 };
+/// Where an edge is: it begins at `origin`, along `direction` (unit).
+struct EdgePose {
+  geo::Vec3 origin = geo::Vec3::Zero(), direction = geo::Vec3::UnitZ();
+};
 /// The pose of a hand's edge: from `origin` along `direction` (unit), `depth` long.
 struct Stroke {
   std::uint64_t id = 0, input = 0;
@@ -39,7 +44,13 @@ struct Stroke {
   /// Distance from the origin to the point of the surface that the edge follows; none: it follows
   /// the ray.
   std::optional<double> above = {};
+  /// Poses between the message before and this one, in their order.
+  std::vector<EdgePose> way = {};
 };
+/// Appends a pose to the path of an edge. A path of longest_path poses first loses every second
+/// one.
+void add_pose(std::vector<EdgePose>& path, const EdgePose& pose);
+constexpr std::size_t longest_path = 4096;
 /// A point of the surface: barycentric coordinates in the face of a slot.
 struct Spot {
   std::uint32_t face = 0;

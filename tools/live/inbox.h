@@ -33,7 +33,8 @@ struct Request {
 /// Whether a request is the begin of a stroke that waited for `seconds` or longer.
 bool is_late_stroke(const Request& request, std::chrono::steady_clock::time_point now, double seconds);
 
-/// A queue in which a pointer's move replaces the move before it.
+/// A queue in which a pointer's move takes the place of the move before it. Strokes keep their
+/// path.
 class Inbox {
  public:
   /// Appends a request. False where the queue is full; nothing is kept then, except of pages that

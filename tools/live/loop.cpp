@@ -18,7 +18,7 @@ namespace {
 using Clock = Pacer::Clock;
 
 // Seconds by which input may be late. A stroke whose begin waited longer is left out. A stroke ends
-// this long after its pointer was released.
+// this long after its pointer was released, in the time of the simulation.
 constexpr double latest_begin = 1, latest_end = 2;
 
 class Loop {
@@ -65,8 +65,8 @@ class Loop {
           " would have made surfaces cross; the cut goes on where it can");
     const auto end = Clock::now();
     pacer_.add(begin, end);
-    if (session_.end_late_strokes(std::chrono::duration<double>(end - begin).count(), latest_end) > 0)
-      say("frames take too long: a stroke ends where its edge is");
+    if (session_.end_late_strokes(1 / session_.original().frame_rate, latest_end) > 0)
+      say("the edge is far behind the pointer: a stroke ends where it is");
     steps_ = std::max(0, steps_ - 1);
     if (const Effort effort = pacer_.effort(); effort != effort_) session_.set_effort(effort), effort_ = effort;
   }

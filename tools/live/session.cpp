@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include <kerf/error.h>
 #include <kerf/pieces.h>
@@ -19,9 +20,72 @@ constexpr std::size_t most_hands = 8;     // blades and springs at a time
 constexpr int count_interval = 12;        // frames between two counts of pieces while a blade cuts
 constexpr double farthest_pull = 0.6;     // stretch of a spring, in diagonals of the body
 constexpr double most_motion = 2;         // of an edge point in a frame, in the finest node spacing: one cut
+constexpr double most_bend = 0.125;       // of a path in a frame, in that spacing: most_motion on a circle of four
 constexpr double blade_width = 0.8;       // from edge to back, in the coarsest node spacing
 constexpr double blade_thickness = 0.15;  // at the back: parts the sheets, and feels their force
 constexpr double finest_edge = 48;        // segments of an edge
+
+// The part of v across a unit direction.
+geo::Vec3 across(const geo::Vec3& v, const geo::Vec3& direction) { return v - v.dot(direction) * direction; }
+
+// The larger motion of an edge's two ends.
+double way_between(const EdgePose& a, const EdgePose& b, double length) {
+  const geo::Vec3 way = b.origin - a.origin;
+  return std::max(way.norm(), (way + length * (b.direction - a.direction)).norm());
+}
+
+// A motion of an edge towards a pose of its path.
+struct Advance {
+  EdgePose pose;
+  double way = 0;  // of its ends
+  bool arrives = false;
+};
+
+// Both ends go straight.
+Advance approach(const EdgePose& from, const EdgePose& to, double length, double most) {
+  const double way = way_between(from, to, length);
+  if (way <= most) return {to, way, true};
+  EdgePose pose = from;
+  pose.origin += most / way * (to.origin - from.origin);
+  const geo::Vec3 direction = from.direction + most / way * (to.direction - from.direction);
+  if (direction.norm() > 0.1) pose.direction = direction.normalized();
+  return {pose, most, false};
+}
+
+// Moves an edge on the surface, no point of it farther than `most`. Normals of triangles jump. An
+// edge that turned with them would sweep a sheet that crosses itself and cuts off crumbs. So the
+// turn moves a point by at most `most_turn` of the way across the edge, and every point goes
+// forward. The edge has arrived when it is at the point, however it is turned.
+Advance follow(const EdgePose& from, const EdgePose& to, double length, double above, double most) {
+  constexpr double most_turn = 0.5;
+  const double reach = std::max(above, length - above);
+  const geo::Vec3 begin = from.origin + above * from.direction;
+  const geo::Vec3 all = to.origin + above * to.direction - begin;
+  const double share = std::min(1.0, most / std::max((1 + most_turn) * all.norm(), 1e-300));
+  const geo::Vec3 way = share * all, turn = share * (to.direction - from.direction);
+  const double wanted = reach * turn.norm(), bound = most_turn * across(way, from.direction).norm();
+  EdgePose pose;
+  pose.direction = (from.direction + (wanted > bound ? bound / wanted : 1) * turn).normalized();
+  pose.origin = begin + way - above * pose.direction;
+  return {pose, (1 + most_turn) * way.norm(), share == 1};
+}
+
+double distance_to_segment(const geo::Vec3& p, const geo::Vec3& a, const geo::Vec3& b) {
+  const geo::Vec3 way = b - a;
+  const double size = way.squaredNorm(), at = size > 0 ? std::clamp((p - a).dot(way) / size, 0.0, 1.0) : 0;
+  return (p - a - at * way).norm();
+}
+
+// Whether the ends of an edge that goes straight from a pose to another one come within `most` of
+// where they are in the poses between.
+bool is_straight(const EdgePose& from, std::span<const EdgePose> between, const EdgePose& to, double length,
+                 double most) {
+  const auto far_end = [&](const EdgePose& pose) { return geo::Vec3(pose.origin + length * pose.direction); };
+  return std::all_of(between.begin(), between.end(), [&](const EdgePose& pose) {
+    return distance_to_segment(pose.origin, from.origin, to.origin) <= most &&
+           distance_to_segment(far_end(pose), far_end(from), far_end(to)) <= most;
+  });
+}
 
 // The pose of an edge along local z, whose back is along local x.
 geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo::Vec3& back) {
@@ -29,9 +93,6 @@ geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo
   axes << back, direction.cross(back), direction;
   return {origin, Eigen::Quaterniond(axes).normalized()};
 }
-
-// The part of v across a unit direction.
-geo::Vec3 across(const geo::Vec3& v, const geo::Vec3& direction) { return v - v.dot(direction) * direction; }
 
 double finest_spacing(const geo::Body& body) {
   return *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
@@ -92,12 +153,13 @@ void Session::obey(ClientId page, const Stroke& stroke) {
     require_free_hand();
     if (stroke.depth > 100 * geo::bounding_box(setup_.models.all).diagonal()) throw BadMessage("the edge is too long");
     HeldBlade& held = blades_[hand];
-    held.now = held.target = {stroke.origin, stroke.direction}, held.length = stroke.depth, held.above = stroke.above;
+    held.now = {stroke.origin, stroke.direction}, held.length = stroke.depth, held.above = stroke.above;
     return;
   }
   const auto held = blades_.find(hand);
   if (held == blades_.end()) return;  // ended by undo or reset
-  held->second.target = {stroke.origin, stroke.direction};
+  for (const EdgePose& pose : stroke.way) add_pose(held->second.path, pose);
+  add_pose(held->second.path, {stroke.origin, stroke.direction});
   held->second.ends = stroke.phase == Phase::end;
 }
 
@@ -277,48 +339,30 @@ void Session::reset() {
   go_on_from(setup_.scene, start_);
 }
 
-// Moves an edge towards the pointer, no farther than one cut, so that a frame has a bounded cost.
-// An edge that a fast pointer has left behind catches up.
+// Moves an edge along its path, no farther than one cut, so that a frame has a bounded cost. An
+// edge that a fast pointer has left behind catches up. In a frame an edge moves straight, so it
+// stops where the path bends.
 void Session::chase(HeldBlade& held, bool whole) const {
-  Edge& now = held.now;
-  const Edge& to = held.target;
-  const double most = most_motion * finest_spacing(run_.body());
-  if (held.above) {
-    follow(held, whole ? std::numeric_limits<double>::infinity() : most);
-    return;
+  const double spacing = finest_spacing(run_.body());
+  const double most = whole ? std::numeric_limits<double>::infinity() : most_motion * spacing;
+  const EdgePose begin = held.now;
+  std::size_t passed = 0;
+  double gone = 0;
+  while (passed < held.path.size() && gone < most) {
+    const Advance step = held.above ? follow(held.now, held.path[passed], held.length, *held.above, most - gone)
+                                    : approach(held.now, held.path[passed], held.length, most - gone);
+    const std::span before(held.path.data(), passed);
+    if (!is_straight(begin, before, step.pose, held.length, most_bend * spacing)) break;
+    held.now = step.pose;
+    gone += step.way;
+    if (!step.arrives) break;
+    held.path[passed++] = step.pose;
   }
-  const double way =
-      std::max((to.origin - now.origin).norm(),
-               (to.origin + held.length * to.direction - now.origin - held.length * now.direction).norm());
-  if (whole || way <= most) {
-    now = to;
-    return;
-  }
-  now.origin += most / way * (to.origin - now.origin);
-  const geo::Vec3 direction = now.direction + most / way * (to.direction - now.direction);
-  if (direction.norm() > 0.1) now.direction = direction.normalized();
-}
-
-// Moves an edge on the surface towards the pointer, no point of it farther than `most`. Normals of
-// triangles jump. An edge that turned with them would sweep a sheet that crosses itself and cuts
-// off crumbs. So the turn moves a point by at most `most_turn` of the way across the edge, and
-// every point goes forward. The edge has arrived when it is at the point, however it is turned.
-void Session::follow(HeldBlade& held, double most) {
-  constexpr double most_turn = 0.5;
-  Edge& now = held.now;
-  const double above = *held.above, reach = std::max(above, held.length - above);
-  const geo::Vec3 from = now.origin + above * now.direction;
-  const geo::Vec3 all = held.target.origin + above * held.target.direction - from;
-  const double share = std::min(1.0, most / std::max((1 + most_turn) * all.norm(), 1e-300));
-  const geo::Vec3 way = share * all, turn = share * (held.target.direction - now.direction);
-  const double wanted = reach * turn.norm(), bound = most_turn * across(way, now.direction).norm();
-  now.direction = (now.direction + (wanted > bound ? bound / wanted : 1) * turn).normalized();
-  now.origin = from + way - above * now.direction;
-  if (share == 1) held.target = now;
+  held.path.erase(held.path.begin(), held.path.begin() + static_cast<std::ptrdiff_t>(passed));
 }
 
 // Turns the back of a blade against its motion, little by little: material is beside it.
-void Session::turn(HeldBlade& held, const Edge& before) const {
+void Session::turn(HeldBlade& held, const EdgePose& before) const {
   constexpr double least_motion = 0.02, share = 0.3;  // in node spacings; of the turn, in a frame
   const geo::Vec3 motion =
       across(held.now.origin - before.origin + 0.5 * held.length * (held.now.direction - before.direction),
@@ -333,7 +377,7 @@ void Session::turn(HeldBlade& held, const Edge& before) const {
   if (held.back != geo::Vec3::Zero()) held.back = across(held.back, held.now.direction).normalized();
 }
 
-void Session::add_blade(HeldBlade& held, const Edge& from) {
+void Session::add_blade(HeldBlade& held, const EdgePose& from) {
   save();
   const double coarsest = coarsest_spacing(run_.body());
   geo::Blade blade;
@@ -349,7 +393,7 @@ void Session::add_blade(HeldBlade& held, const Edge& from) {
 
 void Session::extend_hands(bool whole) {
   for (auto& [hand, held] : blades_) {
-    const Edge before = held.now;
+    const EdgePose before = held.now;
     chase(held, whole);
     turn(held, before);
     if (held.back == geo::Vec3::Zero()) continue;
@@ -371,8 +415,7 @@ bool Session::end_hands() {
   for (auto at = blades_.begin(); at != blades_.end();) {
     // A stroke that has ended goes on until its edge is where it ended.
     const HeldBlade& held = at->second;
-    const bool there = held.now.origin == held.target.origin && held.now.direction == held.target.direction;
-    if (!held.ends || !there) {
+    if (!held.ends || !held.path.empty()) {
       ++at;
       continue;
     }
@@ -388,7 +431,10 @@ bool Session::end_hands() {
 std::size_t Session::end_late_strokes(double seconds, double most) {
   std::size_t late = 0;
   for (auto& [hand, held] : blades_)
-    if (held.ends && (held.late += seconds) >= most) held.target = held.now, ++late;
+    if (held.ends && (held.late += seconds) >= most) {
+      held.path.clear();
+      ++late;
+    }
   if (late > 0) end_hands();
   return late;
 }

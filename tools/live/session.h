@@ -57,12 +57,12 @@ class Session {
 
   /// Computes the next frame. Where it cannot be computed, the run goes back to before the last
   /// stroke, or begins anew; the result is then the reason, else empty.
-  /// `whole`: edges move all the way to the pointer, however long the frame then takes.
+  /// `whole`: edges move as far as their path is straight, however long the frame then takes.
   std::string advance(bool whole = false);
 
   /// Ends strokes where their edges are, if they were released `most` seconds ago or earlier, and
-  /// returns their number. `seconds`: duration of the last frame. So an edge far behind its pointer
-  /// does not cut long after the hand has moved.
+  /// returns their number. `seconds`: simulated in the last frame. So an edge far behind its pointer
+  /// does not cut long after the hand has moved, while a slow machine has the time that it needs.
   std::size_t end_late_strokes(double seconds, double most);
 
   /// Statistics of the last frame.
@@ -91,11 +91,9 @@ class Session {
 
  private:
   using Hand = std::pair<ClientId, std::uint64_t>;  // a page and the number of its stroke
-  struct Edge {
-    geo::Vec3 origin, direction;  // unit
-  };
   struct HeldBlade {
-    Edge now, target;  // where the edge is, and where the pointer is
+    EdgePose now;
+    std::vector<EdgePose> path;  // poses that the edge has still to pass; the last one is the pointer's
     double length = 0;
     std::optional<double> above;         // of an edge that follows the surface: from its origin to there
     geo::Vec3 back = geo::Vec3::Zero();  // unit, from the edge against its motion; zero before it has moved
@@ -133,9 +131,8 @@ class Session {
   void require_free_hand() const;
   void extend_hands(bool whole);
   void chase(HeldBlade& held, bool whole) const;
-  static void follow(HeldBlade& held, double most);
-  void turn(HeldBlade& held, const Edge& before) const;
-  void add_blade(HeldBlade& held, const Edge& from);
+  void turn(HeldBlade& held, const EdgePose& before) const;
+  void add_blade(HeldBlade& held, const EdgePose& from);
   bool end_hands();
   void count_pieces();
   geo::Vec3 material_point(const Spot& spot, geo::SurfaceVertexId& nearest) const;

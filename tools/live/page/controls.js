@@ -154,9 +154,8 @@ function dress() {
 function begin() {
   followAddress();
   if (window.matchMedia("(max-width: 700px)").matches) document.body.classList.add("wide"), $("menu").setAttribute("aria-expanded", "false");
-  hand.ghost = new Ghost();
   plots.force = new Plot("force-plot", "#b5432a", newtons), plots.rate = new Plot("rate-plot", "#2464b4", String);
-  layers.push(surface, world, inside, { update() {}, beforeDraw: () => hand.ghost.beforeDraw() }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
+  layers.push(surface, world, inside, { update() {}, beforeDraw: drawGhosts }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
   listenToControls(), listenToKeys(), listenToPointer();
   surface.dress();
   showTool(), showDepth();

@@ -1,7 +1,20 @@
 // Mouse, touch and pen: one finger or the left button has the tool, two fingers or the right button have the eye.
 const pointers = new Map();
 const spent = new Set();  // pointers that have drawn a stroke: after Escape, what is left of the drag does nothing
-const slop = 5;  // pixels that a pointer moves before a knife cuts: a click does not
+const slop = 5;     // pixels that a pointer moves before a knife cuts: a click does not
+const stride = 3;   // pixels between two places of its path
+
+// Where the pointer has been since the last event: the browser collects moves until it draws.
+function placesOf(e) {
+  const box = $("canvas").getBoundingClientRect(), places = [];
+  for (const at of e.getCoalescedEvents?.() ?? []) {
+    const place = [at.clientX - box.x, at.clientY - box.y], [x, y] = places[places.length - 1] ?? [Infinity, 0];
+    if (Math.hypot(place[0] - x, place[1] - y) >= stride) places.push(place);
+  }
+  const [x, y] = places[places.length - 1] ?? [NaN, NaN];
+  if (x !== e.offsetX || y !== e.offsetY) places.push([e.offsetX, e.offsetY]);
+  return places;
+}
 
 function listenToPointer() {
   const canvas = $("canvas");
@@ -23,7 +36,7 @@ function listenToPointer() {
     const dx = e.clientX - before.clientX, dy = e.clientY - before.clientY;
     if (hand.stroke) {
       pointers.set(e.pointerId, e);
-      if (hand.stroke.pointer === e.pointerId) moveStroke(e.offsetX, e.offsetY);
+      if (hand.stroke.pointer === e.pointerId) for (const place of placesOf(e)) moveStroke(...place);
       return;
     }
     if (pending) {
@@ -31,7 +44,11 @@ function listenToPointer() {
       const { x, y, id } = pending;
       pending = null;
       pointers.set(e.pointerId, e);
-      if (beginStroke(x, y, id)) return spent.add(id), moveStroke(e.offsetX, e.offsetY);
+      if (beginStroke(x, y, id)) {
+        spent.add(id);
+        for (const place of placesOf(e)) moveStroke(...place);
+        return;
+      }
     }
     pointers.set(e.pointerId, e);
     if (pointers.size > 1 || !spent.has(e.pointerId)) moveEye(e, dx, dy);

@@ -104,7 +104,7 @@ class Surface {
     }
     this.bind(this.skin, skin, true), this.bind(this.walls, walls, true), this.bind(this.lips, lips, false);
     this.wireStale = true;
-    this.fillWire();
+    this.update();
   }
   bind(mesh, index, shaded) {
     mesh.geometry.dispose();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,7 +37,7 @@ class Table {
   const Json* find(const char* key) {
     const auto at = json_.find(key);
     if (at == json_.end()) return nullptr;
-    ++known_;
+    known_.insert(key);
     return &*at;
   }
   const Json& at(const char* key) {
@@ -92,7 +93,7 @@ class Table {
     return x;
   }
   void done() const {
-    if (known_ == json_.size()) return;
+    if (known_.size() == json_.size()) return;
     throw BadMessage("'" + name_ + "' has a key that is not known");
   }
 
@@ -114,7 +115,7 @@ class Table {
 
   const Json& json_;
   std::string name_;
-  std::size_t known_ = 0;
+  std::set<std::string_view> known_;
 };
 
 constexpr std::uint64_t largest_count = std::uint64_t(1) << 53;  // JavaScript's whole numbers
@@ -126,6 +127,8 @@ Phase phase_of(Table& t) {
   if (value == "end") return Phase::end;
   t.fail("phase", "\"begin\", \"move\" or \"end\"");
 }
+
+Phase grab_phase_of(Table& t) { return t.at("phase") == "hold" ? Phase::hold : phase_of(t); }
 
 // The pose of an edge on a ray from the eye, which begins at a distance from it.
 EdgePose on_ray(const geo::Vec3& eye, const geo::Vec3& ray, double from) { return {eye + from * ray, ray}; }
@@ -166,11 +169,14 @@ Spot spot_of(Table& t) {
 }
 
 Grab grab_of(Table& t) {
-  Grab g{t.count("id", largest_count), t.count("input", largest_count), phase_of(t), {}, t.point("to")};
-  if (g.phase == Phase::begin)
+  Grab g{t.count("id", largest_count), t.count("input", largest_count), grab_phase_of(t), {}, t.point("to")};
+  if (t.find("held")) g.held = t.count("held", largest_count);
+  if (g.phase == Phase::begin && !g.held) {
     g.spot = spot_of(t);
-  else
-    t.find("face"), t.find("bary");
+  } else {
+    t.find("face");
+    t.find("bary");
+  }
   return g;
 }
 
@@ -212,6 +218,7 @@ Command command_of(const std::string& key, const Json& value) {
   if (key == "pin") return inner(value, key, pin_of);
   if (key == "set") return inner(value, key, set_of);
   if (key == "undo") return sign<Undo>(value, key);
+  if (key == "redo") return sign<Redo>(value, key);
   if (key == "reset") return sign<Reset>(value, key);
   if (key == "step") return sign<Step>(value, key);
   if (key == "pause") {

@@ -20,7 +20,8 @@ struct BadMessage : std::runtime_error {
 /// The longest message, in bytes.
 constexpr std::size_t longest_message = 4096;
 
-enum class Phase { begin, move, end };
+/// `hold` ends the hand's part in a grab, whose spring stays.
+enum class Phase { begin, move, end, hold };
 
 /// Confirms that the message with this sequence number was shown.
 struct Acknowledge {
@@ -62,6 +63,7 @@ struct Grab {
   Phase phase = Phase::begin;
   Spot spot;  ///< read where the grab begins
   geo::Vec3 to = geo::Vec3::Zero();
+  std::optional<std::uint64_t> held = {};  ///< where it begins: number of the spring that it takes up again
 };
 /// Holds, or frees, the material around a point of the surface.
 struct Pin {
@@ -75,13 +77,14 @@ struct Set {
   std::optional<geo::Vec3> gravity;
 };
 struct Undo {};
+struct Redo {};
 struct Reset {};
 struct Pause {
   bool on = true;
 };
 struct Step {};
 
-using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Set, Undo, Reset, Pause, Step>;
+using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Set, Undo, Redo, Reset, Pause, Step>;
 
 /// Reads a message. Throws BadMessage where it is longer than longest_message, no JSON, of no known
 /// kind, has unknown or missing keys, or values out of range. Throws nothing else.

@@ -17,16 +17,26 @@ namespace live {
 /// A page came, or went.
 struct Join {};
 struct Leave {};
-/// A file is wanted. `answer` may be called on any thread, once, while the server lives: with its
-/// bytes, or with a reason.
+/// What the simulation answers to a request of HTTP.
+struct Answer {
+  std::string error = {};  ///< empty: it was obeyed
+  std::string bytes = {};  ///< of a file
+  std::string name = {};   ///< of the file, without its ending
+};
+/// A file is wanted. `answer` may be called on any thread, once, while the server lives.
 struct Save {
   std::string format;  ///< kerf, ply, glb or toml
-  std::function<void(std::string bytes, std::string error)> answer;
+  std::function<void(Answer)> answer;
+};
+/// A model is to be opened in place of the one that is shown. `answer`: as in Save.
+struct Open {
+  std::string name, bytes;
+  std::function<void(Answer)> answer;
 };
 
 struct Request {
   ClientId page = 0;
-  std::variant<Command, Join, Leave, Save> what;
+  std::variant<Command, Join, Leave, Save, Open> what;
   std::chrono::steady_clock::time_point arrived = {};  ///< set by Inbox::put()
 };
 

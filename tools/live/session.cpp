@@ -94,6 +94,17 @@ geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo
   return {origin, Eigen::Quaterniond(axes).normalized()};
 }
 
+// Keys after a time go. The motion then ends where it was at that time.
+void cut_motion(geo::Motion& motion, double time) {
+  if (motion.keys.empty() || motion.keys.back().time <= time) return;
+  const geo::Vec3 position = motion.at(time).position;
+  std::erase_if(motion.keys, [&](const geo::Motion::Key& key) { return key.time > time; });
+  if (motion.keys.empty() || motion.keys.back().time == time) return;
+  motion.keys.push_back(motion.keys.back());
+  motion.keys.back().time = time;
+  motion.keys.back().position = position;
+}
+
 double finest_spacing(const geo::Body& body) {
   return *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
 }
@@ -189,7 +200,7 @@ geo::Vec3 Session::world_point(const Spot& spot) const {
 double Session::pull_stiffness(std::uint32_t node) const {
   const double size = geo::bounding_box(setup_.models.all).diagonal();
   const geo::Material& material = run_.solid().materials().of(node);
-  return std::max(2 * material.young * run_.body().nodes.radius[node], 10 * mass_ * run_.scene().gravity.norm() / size);
+  return std::max(2 * material.young * run_.body().nodes.radius[node], 10 * mass_ * gravity().norm() / size);
 }
 
 geo::NodeId Session::carrier_of(geo::SurfaceVertexId vertex) const {
@@ -199,25 +210,42 @@ geo::NodeId Session::carrier_of(geo::SurfaceVertexId vertex) const {
   return binding.master_node[master.index()];
 }
 
+void Session::begin_grab(const Hand& hand, const Grab& grab) {
+  if (pulls_.contains(hand)) throw BadMessage("this grab has begun already");
+  require_free_hand();
+  if (grab.held) {
+    const auto at = holds_.find(*grab.held);
+    if (at == holds_.end()) throw BadMessage("there is nothing held by this number");
+    pulls_[hand] = at->second;
+    pulls_[hand].to = grab.to;
+    holds_.erase(at);
+    return;
+  }
+  geo::SurfaceVertexId nearest;
+  const geo::Vec3 x = material_point(grab.spot, nearest);
+  geo::Pull pull;
+  pull.point = x, pull.node = carrier_of(nearest).value;
+  pull.stiffness = pull_stiffness(*pull.node);
+  const std::size_t p = run_.add_pull(std::move(pull));
+  run_.extend_pull(p, 0, world_point(grab.spot));
+  pulls_[hand] = {p, grab.to, nearest};
+}
+
 void Session::obey(ClientId page, const Grab& grab) {
   taken_[page] = grab.input;
   const Hand hand{page, grab.id};
   if (grab.phase == Phase::begin) {
-    if (pulls_.contains(hand)) throw BadMessage("this grab has begun already");
-    require_free_hand();
-    geo::SurfaceVertexId nearest;
-    const geo::Vec3 x = material_point(grab.spot, nearest);
-    geo::Pull pull;
-    pull.point = x, pull.node = carrier_of(nearest).value;
-    pull.stiffness = pull_stiffness(*pull.node);
-    const std::size_t p = run_.add_pull(std::move(pull));
-    run_.extend_pull(p, 0, world_point(grab.spot));
-    pulls_[hand] = {p, grab.to};
+    begin_grab(hand, grab);
     return;
   }
   const auto held = pulls_.find(hand);
   if (held == pulls_.end()) return;
   held->second.to = grab.to, held->second.ends = grab.phase == Phase::end;
+  if (grab.phase != Phase::hold) return;
+  if (holds_.size() >= most_hands) throw BadMessage("as many places are held as can be at a time");
+  if (held->second.number == 0) held->second.number = ++last_hold_;
+  holds_[held->second.number] = held->second;
+  pulls_.erase(held);
 }
 
 void Session::obey(const Pin& pin) {
@@ -284,36 +312,60 @@ void Session::leave(ClientId page) {
 
 void Session::save() {
   const geo::Scene& scene = run_.scene();
-  std::size_t faces = run_.body().surface.face_count();
-  for (const Saved& s : saved_) faces += s.body.surface.face_count();
-  while (!saved_.empty() && (saved_.size() >= bounds_.saved || faces > bounds_.saved_faces))
-    faces -= saved_.front().body.surface.face_count(), saved_.erase(saved_.begin());
-  saved_.push_back({run_.body(), run_.state(), scene.blades.size(), scene.grips.size(), scene.pulls.size(),
-                    changes_.size(), checkpoints_, pins_});
+  saved_states_.push(sim::checkpoint_bytes(run_.body(), run_.state(), setup_.fingerprint));
+  saved_.push_back({run_.state().time, run_.state().frame, scene.blades.size(), scene.grips.size(), scene.pulls.size(),
+                    changes_.size(), in_hands()});
+  drop_states();
 }
 
-void Session::restore(Saved saved) {
-  const double time = saved.state.time;
+// The oldest states go first. The newest one stays, however large it is.
+void Session::drop_states() {
+  while (saved_.size() > 1 && (saved_.size() > bounds_.saved || saved_bytes() > bounds_.saved_bytes)) {
+    saved_states_.erase(0);
+    saved_.erase(saved_.begin());
+    dropped_ = true;
+  }
+  while (!undone_.empty() && saved_bytes() > bounds_.saved_bytes) {
+    undone_states_.erase(0);
+    undone_states_.erase(0);
+    undone_.erase(undone_.begin());
+  }
+}
+
+std::pair<geo::Scene, Session::Removed> Session::scene_at(const Saved& saved) const {
   geo::Scene scene = setup_.scene;
+  Removed removed;
   const geo::Scene& now = run_.scene();
-  scene.blades = now.blades, scene.grips = now.grips, scene.pulls = now.pulls;
-  scene.blades.resize(saved.blades), scene.grips.resize(saved.grips), scene.pulls.resize(saved.pulls);
-  changes_.resize(saved.changes);
-  for (const geo::SceneChange& change : changes_) scene.add_change(change);
-  const auto later = [&](const geo::Motion::Key& key) { return key.time > time; };
-  for (std::size_t b = setup_.scene.blades.size(); b < scene.blades.size(); ++b)
-    std::erase_if(scene.blades[b].motion.keys, later);
-  for (std::size_t p = setup_.scene.pulls.size(); p < scene.pulls.size(); ++p)
-    std::erase_if(scene.pulls[p].motion.keys, later);
-  for (std::size_t g = setup_.scene.grips.size(); g < scene.grips.size(); ++g)
-    if (scene.grips[g].until > time) scene.grips[g].until = std::numeric_limits<double>::infinity();
-  checkpoints_ = std::move(saved.checkpoints);
-  if (saved.state.frame > 0 && (checkpoints_.empty() || checkpoints_.back() != saved.state.frame))
-    checkpoints_.push_back(saved.state.frame);
-  pins_ = std::move(saved.pins);
-  const std::string checkpoint = sim::checkpoint_bytes(saved.body, saved.state, setup_.fingerprint);
-  saved.body = {}, saved.state = {};
-  go_on_from(scene, checkpoint);
+  const auto begin = [](const auto& original) { return original.size(); };
+  scene.blades.assign(now.blades.begin(), now.blades.begin() + static_cast<std::ptrdiff_t>(saved.blades));
+  scene.grips.assign(now.grips.begin(), now.grips.begin() + static_cast<std::ptrdiff_t>(saved.grips));
+  scene.pulls.assign(now.pulls.begin(), now.pulls.begin() + static_cast<std::ptrdiff_t>(saved.pulls));
+  const auto is_later = [&](const geo::Motion& motion) {
+    return !motion.keys.empty() && motion.keys.back().time > saved.time;
+  };
+  for (std::size_t b = begin(setup_.scene.blades); b < now.blades.size(); ++b) {
+    if (b >= saved.blades || is_later(now.blades[b].motion)) removed.blades[b] = now.blades[b];
+    if (b < saved.blades) cut_motion(scene.blades[b].motion, saved.time);
+  }
+  for (std::size_t p = begin(setup_.scene.pulls); p < now.pulls.size(); ++p) {
+    if (p >= saved.pulls || is_later(now.pulls[p].motion)) removed.pulls[p] = now.pulls[p];
+    if (p < saved.pulls) cut_motion(scene.pulls[p].motion, saved.time);
+  }
+  for (std::size_t g = begin(setup_.scene.grips); g < now.grips.size(); ++g) {
+    const bool ends_later = std::isfinite(now.grips[g].until) && now.grips[g].until > saved.time;
+    if (g >= saved.grips || ends_later) removed.grips[g] = now.grips[g];
+    if (g < saved.grips && ends_later) scene.grips[g].until = std::numeric_limits<double>::infinity();
+  }
+  removed.changes.assign(changes_.begin() + static_cast<std::ptrdiff_t>(saved.changes), changes_.end());
+  for (std::size_t c = 0; c < saved.changes; ++c) scene.add_change(changes_[c]);
+  return {std::move(scene), std::move(removed)};
+}
+
+void Session::go_on(const geo::Scene& scene, const std::string& state, int frame, InHands hands) {
+  checkpoints_ = std::move(hands.checkpoints), pins_ = std::move(hands.pins), holds_ = std::move(hands.holds);
+  withheld_ = hands.withheld;
+  if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
+  go_on_from(scene, state);
 }
 
 void Session::go_on_from(const geo::Scene& scene, const std::string& checkpoint) {
@@ -327,15 +379,61 @@ void Session::go_on_from(const geo::Scene& scene, const std::string& checkpoint)
   count_pieces();
 }
 
-void Session::undo() {
-  if (saved_.empty()) throw BadMessage("there is no cut to undo");
-  Saved last = std::move(saved_.back());
+void Session::go_back(const std::string& state) {
+  const Saved last = std::move(saved_.back());
   saved_.pop_back();
-  restore(std::move(last));
+  const geo::Scene scene = scene_at(last).first;
+  changes_.resize(last.changes);
+  go_on(scene, state, last.frame, last.hands);
+}
+
+void Session::undo() {
+  if (saved_.empty())
+    throw BadMessage(dropped_ ? "cuts before these are not kept for undo" : "there is no cut to undo");
+  undone_.push_back({saved_.back(), scene_at(saved_.back()).second, in_hands(), run_.state().frame});
+  const std::string before = saved_states_.pop();
+  undone_states_.push(before);
+  undone_states_.push(sim::checkpoint_bytes(run_.body(), run_.state(), setup_.fingerprint));
+  go_back(before);
+  drop_states();
+}
+
+void Session::redo() {
+  if (undone_.empty()) throw BadMessage("there is no cut to make again");
+  Undone last = std::move(undone_.back());
+  undone_.pop_back();
+  geo::Scene scene = scene_at(last.before).first;
+  const auto put_back = [](auto& list, auto& removed) {
+    for (auto& [index, item] : removed) {
+      if (index >= list.size()) list.resize(index + 1);
+      list[index] = std::move(item);
+    }
+  };
+  put_back(scene.blades, last.removed.blades);
+  put_back(scene.grips, last.removed.grips);
+  put_back(scene.pulls, last.removed.pulls);
+  changes_.resize(last.before.changes);
+  for (const geo::SceneChange& change : last.removed.changes) {
+    scene.add_change(change);
+    changes_.push_back(change);
+  }
+  const std::string after = undone_states_.pop();
+  saved_states_.push(undone_states_.pop());
+  saved_.push_back(std::move(last.before));
+  go_on(scene, after, last.frame, std::move(last.hands));
+}
+
+void Session::withhold_weight() {
+  if (withheld_ || run_.scene().gravity.isZero() || changes_.size() >= bounds_.changes) return;
+  const geo::Vec3 gravity = run_.scene().gravity;
+  change_run({.gravity = geo::Vec3(geo::Vec3::Zero())});
+  withheld_ = gravity;
 }
 
 void Session::reset() {
-  saved_.clear(), checkpoints_.clear(), pins_.clear(), changes_.clear();
+  saved_.clear(), saved_states_.clear(), undone_.clear(), undone_states_.clear();
+  checkpoints_.clear(), pins_.clear(), changes_.clear(), holds_.clear();
+  dropped_ = false, withheld_.reset();
   go_on_from(setup_.scene, start_);
 }
 
@@ -401,11 +499,13 @@ void Session::extend_hands(bool whole) {
     run_.extend_blade(*held.blade, 1, pose_of(held.now.origin, held.now.direction, held.back));
   }
   const double most = farthest_pull * geo::bounding_box(setup_.models.all).diagonal();
-  for (auto& [hand, held] : pulls_) {
+  const auto extend = [&](const HeldPull& held) {
     const geo::Vec3 before = run_.scene().pulls[held.pull].motion.keys.back().position, way = held.to - before;
     // A jump of the pointer is made in several frames.
     run_.extend_pull(held.pull, 1, way.norm() > most ? geo::Vec3(before + most / way.norm() * way) : held.to);
-  }
+  };
+  for (const auto& [hand, held] : pulls_) extend(held);
+  for (const auto& [number, held] : holds_) extend(held);
 }
 
 // Ends the hands that said so; whether a stroke was among them. A stroke that has cut nothing need
@@ -420,12 +520,20 @@ bool Session::end_hands() {
       continue;
     }
     last_stroke_ = at->first.second;
-    if (held.blade && held.faces == run_.body().surface.face_count())
-      std::erase_if(saved_, [&](const Saved& s) { return s.blades == *held.blade; });
+    if (held.blade && held.faces == run_.body().surface.face_count()) forget_state(*held.blade);
     at = blades_.erase(at);
   }
   std::erase_if(pulls_, [&](const auto& entry) { return entry.second.ends; });
   return blades_.size() != before;
+}
+
+void Session::forget_state(std::size_t blade) {
+  for (std::size_t s = 0; s < saved_.size(); ++s)
+    if (saved_[s].blades == blade) {
+      saved_states_.erase(s);
+      saved_.erase(saved_.begin() + static_cast<std::ptrdiff_t>(s));
+      return;
+    }
 }
 
 std::size_t Session::end_late_strokes(double seconds, double most) {
@@ -440,6 +548,10 @@ std::size_t Session::end_late_strokes(double seconds, double most) {
 }
 
 std::string Session::advance(bool whole) {
+  if (withheld_ && blades_.empty()) {
+    change_run({.gravity = *withheld_});
+    withheld_.reset();
+  }
   extend_hands(whole);
   try {
     stats_ = run_.advance_frame();
@@ -448,11 +560,15 @@ std::string Session::advance(bool whole) {
     if (saved_.empty())
       reset();
     else
-      undo();
+      go_back(saved_states_.pop());
     return reason;
   }
   has_cut_ = faces_ != run_.body().surface.face_count();
   faces_ = run_.body().surface.face_count();
+  const bool cut_by_hand = std::any_of(blades_.begin(), blades_.end(), [&](const auto& entry) {
+    return entry.second.blade && entry.second.faces != faces_;
+  });
+  if (cut_by_hand) undone_.clear(), undone_states_.clear();
   const bool ended = end_hands();
   if (faces_ != counted_faces_ && (ended || !has_cut_ || ++since_count_ >= count_interval)) count_pieces();
   return {};
@@ -481,6 +597,28 @@ std::vector<geo::Vec3> Session::pins() const {
   std::vector<geo::Vec3> world;
   for (const HeldPin& pin : pins_) world.push_back(pin.world);
   return world;
+}
+
+std::vector<Session::Hold> Session::holds() const {
+  std::vector<Hold> holds;
+  const geo::Complex& surface = run_.body().surface;
+  const auto add = [&](const HeldPull& held) {
+    const geo::Pull& pull = run_.scene().pulls[held.pull];
+    geo::Vec3 at = pull.point + run_.state().motion.displacement[*pull.node];
+    if (const auto slot = slots_.slot(held.nearest); slot && *slot < positions_.size())
+      at = positions_[*slot] + pull.point - surface.point(surface.site(held.nearest));
+    holds.push_back({held.number, at, held.to});
+  };
+  for (const auto& [number, held] : holds_) add(held);
+  for (const auto& [hand, held] : pulls_)
+    if (held.number != 0) add(held);
+  return holds;
+}
+
+std::vector<std::uint64_t> Session::waiting() const {
+  std::vector<std::uint64_t> numbers;
+  for (const auto& [hand, held] : blades_) numbers.push_back(hand.second);
+  return numbers;
 }
 
 std::vector<std::pair<std::vector<geo::Vec3>, double>> Session::edges() const {

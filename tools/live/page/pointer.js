@@ -24,11 +24,17 @@ function listenToPointer() {
     canvas.setPointerCapture(e.pointerId);
     pointers.set(e.pointerId, e);
     spread = 0;
+    cursor.hide();
+    if (pointers.size > 1 && hand.stroke?.kind === "grab") return spent.add(e.pointerId), keepHeld(hand.stroke);
     if (pointers.size > 1) return pending = null, endStroke();  // a second finger: the eye moves
-    const tool = e.button === 0 && !e.shiftKey && !e.altKey && !e.ctrlKey;
+    const grabs = state.tool === "grab", stays = grabs && (e.ctrlKey || e.metaKey);
+    const tool = e.button === 0 && !e.shiftKey && !e.altKey && (stays || !e.ctrlKey);
     if (!tool || state.tool === "orbit") return;
-    if (state.tool === "grab") beginStroke(e.offsetX, e.offsetY, e.pointerId) && spent.add(e.pointerId);
-    else pending = { x: e.offsetX, y: e.offsetY, id: e.pointerId };
+    if (grabs) {
+      if (!beginStroke(e.offsetX, e.offsetY, e.pointerId)) return;
+      spent.add(e.pointerId);
+      if (stays) keepHeld(hand.stroke);
+    } else pending = { x: e.offsetX, y: e.offsetY, id: e.pointerId };
   });
   canvas.addEventListener("pointermove", (e) => {
     const before = pointers.get(e.pointerId);
@@ -51,7 +57,7 @@ function listenToPointer() {
       }
     }
     pointers.set(e.pointerId, e);
-    if (pointers.size > 1 || !spent.has(e.pointerId)) moveEye(e, dx, dy);
+    if (!spent.has(e.pointerId)) moveEye(e, dx, dy);
   });
   // Two fingers turn, zoom and move at once; with the shift key or the middle button the eye moves sideways.
   const moveEye = (e, dx, dy) => {
@@ -67,6 +73,7 @@ function listenToPointer() {
     pointers.delete(e.pointerId), spent.delete(e.pointerId);
     if (hand.stroke && hand.stroke.pointer === e.pointerId) {
       if (e.type === "pointerup") moveStroke(e.offsetX, e.offsetY);
+      if (e.ctrlKey || e.metaKey) keepHeld(hand.stroke);
       endStroke();
     } else if (pending && e.type === "pointerup" && state.tool === "pin") pinAt(e.offsetX, e.offsetY);
     pending = null;

@@ -65,27 +65,48 @@ class Scalpel {
     return { point: ray.clone().multiplyScalar(distance).add(origin), normal };
   }
 }
-// A spring on what is under the pointer; its other end moves in the plane through that point that faces the eye.
+// A spring on what is under the pointer, or one that has stayed; its other end moves in the plane through that point that faces the eye.
 class Grab {
   begin(x, y) {
-    const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);
-    if (!hit) return null;
-    this.at = hit, this.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 2), hit.point);
+    const { origin, ray } = rayAt(x, y);
+    this.hold = holdAt(x, y);
+    this.at = this.hold ? null : surface.hit(origin, ray);
+    if (!this.hold && !this.at) return null;
+    const through = this.hold ? toShown(this.hold.to) : this.at.point;
+    this.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 2), through);
+    this.from = [x, y], this.moved = false;
     return this.message(x, y);
   }
   message(x, y) {
     const { origin, ray } = rayAt(x, y), run = this.plane.normal.dot(ray);
     const along = -this.plane.distanceToPoint(origin) / run, to = ray.clone().multiplyScalar(along).add(origin);
+    this.moved ||= Math.hypot(x - this.from[0], y - this.from[1]) >= slop;
     this.edge = [this.held(), to];
-    return { face: this.at.slot, bary: this.at.bary, to: toWorld(to) };
+    return { ...(this.hold ? { held: this.hold.id } : { face: this.at.slot, bary: this.at.bary }), to: toWorld(to) };
   }
   // Where the held point of the surface is now.
   held() {
+    if (this.hold) return toShown(((live.stats.holds ?? []).find((h) => h.id === this.hold.id) ?? this.hold).at);
     const c = surface.corners, p = new THREE.Vector3(), sum = new THREE.Vector3();
     if (!c.has(this.at.slot)) return this.last ?? this.at.point;
     this.at.bary.forEach((w, k) => sum.addScaledVector(p.fromArray(live.position, 3 * c.vertex[3 * this.at.slot + k]), w));
     return this.last = sum;
   }
+  // The last message of a grab. One that has stayed goes on to, unless it was clicked.
+  get ending() { return this.stays || (this.hold && this.moved) ? "hold" : "end"; }
+}
+// A spring that stays, whose end is at a place of the screen.
+function holdAt(x, y) {
+  const canvas = $("canvas"), near = window.matchMedia("(pointer: coarse)").matches ? 26 : 14;
+  return (live.stats.holds ?? []).find(({ to }) => {
+    const p = toShown(to).project(camera);
+    return Math.hypot((p.x + 1) / 2 * canvas.clientWidth - x, (1 - p.y) / 2 * canvas.clientHeight - y) < near;
+  });
+}
+function keepHeld(stroke) {
+  if (stroke.kind !== "grab" || stroke.tool.stays) return;
+  stroke.tool.stays = true;
+  notice({ notice: "This place stays held. A click on the end of its line lets go." });
 }
 const handTools = { knife: Knife, scalpel: Scalpel, grab: Grab };
 
@@ -135,7 +156,7 @@ function endStroke() {
   if (!s) return;
   passOn(s);
   hand.stroke = null;
-  sendInput(s.kind, { id: s.id, phase: "end", ...s.last });
+  sendInput(s.kind, { id: s.id, phase: s.tool.ending ?? "end", ...s.last });
   s.ghost.end();
   redraw();
 }

@@ -466,6 +466,39 @@ TEST_CASE("weight that is withheld acts when the first stroke is over") {
   CHECK(session.run().scene().gravity == geo::Vec3(0, 0, -3));
 }
 
+TEST_CASE("twenty steps of undo for a body of 30,000 triangles take less than 300 MB") {
+  sim::Setup s;
+  s.scene = geo::parse_scene("gravity = [0, 0, 0]\n[body]\nmesh = \"b.ply\"\nspacing = 0.12\n[material]\nyoung = 3e4\n",
+                             "s.toml");
+  s.models = geo::place_models(s.scene, {geo::make_block({1, 1, 1}, 0.0145)});
+  adapt_scene(s.scene, 60, true);
+  REQUIRE(s.models.all.triangles.size() > 28000);
+  Session session(s, {});
+  std::vector<std::string> states;
+  for (std::uint64_t id = 1; id <= 20; ++id) {
+    std::ostringstream body;
+    geo::write_body(body, session.run().body());
+    states.push_back(std::move(body).str());
+    const double y = 0.02 + 0.047 * double(id);
+    Stroke stroke{id, 1, Phase::begin, {-0.1, y, 1.2}, {0, 0, -1}, 0.5};
+    session.obey(1, stroke);
+    stroke.phase = Phase::end, stroke.origin.x() = 0.9;
+    session.obey(1, stroke);
+    while (!session.waiting().empty()) REQUIRE(session.advance(true).empty());
+  }
+  REQUIRE(session.strokes() == 20);
+  INFO(session.saved_bytes());
+  CHECK(session.saved_bytes() < 100'000'000);
+  for (std::size_t id = 20; id-- > 0;) {
+    session.undo();
+    std::ostringstream body;
+    geo::write_body(body, session.run().body());
+    REQUIRE(body.str() == states[id]);
+  }
+  CHECK(session.undone() == 20);
+  WARN(session.saved_bytes());
+}
+
 TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
   const Seeds run = seeds(2);
   for (std::uint64_t seed = run.first; seed < run.first + static_cast<std::uint64_t>(run.count); ++seed) {

@@ -158,8 +158,15 @@ class Loop {
   }
   bool obey_command(ClientId, const Acknowledge&) { return false; }
   bool obey_command(ClientId, const Want&) { return true; }
-  bool obey_command(ClientId page, const Stroke& c) { return session().obey(page, c), false; }
-  bool obey_command(ClientId page, const Grab& c) { return session().obey(page, c), false; }
+  // A run that stands still shows that a stroke waits.
+  bool obey_command(ClientId page, const Stroke& c) {
+    session().obey(page, c);
+    return paused_ && c.phase != Phase::move;
+  }
+  bool obey_command(ClientId page, const Grab& c) {
+    session().obey(page, c);
+    return paused_ && c.phase != Phase::move;
+  }
   bool obey_command(ClientId, const Pin& c) { return session().obey(c), true; }
   bool obey_command(ClientId, const Set& c) { return session().obey(c), true; }
   bool obey_command(ClientId, const Undo&) {

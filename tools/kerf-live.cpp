@@ -70,8 +70,8 @@ void require_options(const Command& command) {
   if (!command.record.empty()) geo::require_writable(command.record);
 }
 
-// Where to write what hands did; empty: nowhere. Where nobody asked for the end, their work is kept
-// beside that of others.
+// Where to write what hands did; empty: nowhere. A run that ended without being asked to keeps
+// their work, and overwrites no file.
 std::string record_path(const Command& command, const live::Shown& shown, live::LoopEnd end) {
   if (!command.record.empty()) return command.record;
   const geo::Scene recording = shown.session->recording();

@@ -343,7 +343,8 @@ std::pair<int, std::string> posted(const Served& s, const std::string& target, c
   tcp::socket socket(io);
   socket.connect({net::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(s.port())});
   beast::http::request<beast::http::string_body> request(beast::http::verb::post, target, 11);
-  request.set(beast::http::field::host, s.host()), request.set(beast::http::field::origin, origin);
+  request.set(beast::http::field::host, s.host());
+  request.set(beast::http::field::origin, origin);
   request.body() = body;
   request.prepare_payload();
   beast::http::write(socket, request);

@@ -36,7 +36,7 @@ class RollingHash {
   std::uint64_t value_ = 0;
 };
 
-// Where the blocks of some bytes are, by their hashes. Of equal hashes the first one is kept.
+// Where the blocks of some bytes are, by their hashes. The first one of equal hashes is kept.
 class Blocks {
  public:
   explicit Blocks(std::string_view bytes)

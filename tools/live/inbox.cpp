@@ -1,5 +1,5 @@
-// While a frame is computed, the moves of a stroke become one with the whole path. Of a grab's moves
-// the last is kept.
+// While a frame is computed, the moves of a stroke become one with the whole path. Grabs keep their
+// last move.
 #include "live/inbox.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ std::pair<int, std::uint64_t> moved(const Request& r) {
 }
 
 // Replaces a move by a later one of the same kind and number, and keeps the path between them.
-void go_on(Request& move, Request&& later) {
+void append_move(Request& move, Request&& later) {
   auto& command = std::get<Command>(later.what);
   if (auto* stroke = std::get_if<Stroke>(&command)) {
     auto& before = std::get<Stroke>(std::get<Command>(move.what));
@@ -48,7 +48,7 @@ bool Inbox::put(Request request) {
       for (auto at = requests_.rbegin(); at != requests_.rend(); ++at)
         if (at->page == request.page) {
           if (moved(*at) != key) break;
-          go_on(*at, std::move(request));
+          append_move(*at, std::move(request));
           return true;
         }
     const bool people = std::holds_alternative<Join>(request.what) || std::holds_alternative<Leave>(request.what);

@@ -17,7 +17,7 @@ namespace live {
 /// A page came, or went.
 struct Join {};
 struct Leave {};
-/// What the simulation answers to a request of HTTP.
+/// The simulation's answer to a request of HTTP.
 struct Answer {
   std::string error = {};  ///< empty: it was obeyed
   std::string bytes = {};  ///< of a file

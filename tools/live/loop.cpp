@@ -59,7 +59,7 @@ class Loop {
   }
   Session& session() const { return *shown_.session; }
 
-  // Of a run that was opened.
+  // Shows a run from its beginning.
   void begin() {
     pacer_ = pacer_of(session());
     scene_ = std::make_shared<std::string>(scene_text(session(), shown_.name, ++runs_));

@@ -41,7 +41,7 @@ namespace {
 constexpr int most_connections = 64, most_messages = 240;  // at a time; per second and page
 constexpr std::size_t most_notices = 16;                   // that wait for a page
 constexpr auto request_time = std::chrono::seconds(10);
-constexpr auto farewell_time = std::chrono::milliseconds(500);  // for pages to be told of the end
+constexpr auto farewell_time = std::chrono::milliseconds(500);  // for pages to hear of the end
 constexpr std::uint64_t largest_model = 256 << 20;              // bytes of a file that a page opens
 
 // Whether two texts are equal, in a time that depends on their lengths only.
@@ -173,7 +173,10 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
       const Content content{++sequence_, nodes_, stress_, taken == s->taken.end() ? 0 : taken->second};
       const bool knows = known_ && scene_ == s->scene;  // another scene where another model was opened
       message_ = knows ? encode_frame(*s, *known_, content) : encode_state(*s, content);
-      known_ = s->topology, scene_ = s->scene, sent_ = s->number, awaited_ = sequence_;
+      known_ = s->topology;
+      scene_ = s->scene;
+      sent_ = s->number;
+      awaited_ = sequence_;
     } else {
       return;
     }
@@ -478,7 +481,7 @@ void Server::Impl::close() {
   end_when_alone();
 }
 
-// Without links there is nobody to wait for.
+// Without links there is no page to wait for.
 void Server::Impl::end_when_alone() {
   ends = true;
   if (links.empty()) io.stop();

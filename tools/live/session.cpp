@@ -361,8 +361,10 @@ std::pair<geo::Scene, Session::Removed> Session::scene_at(const Saved& saved) co
   return {std::move(scene), std::move(removed)};
 }
 
-void Session::go_on(const geo::Scene& scene, const std::string& state, int frame, InHands hands) {
-  checkpoints_ = std::move(hands.checkpoints), pins_ = std::move(hands.pins), holds_ = std::move(hands.holds);
+void Session::resume(const geo::Scene& scene, const std::string& state, int frame, InHands hands) {
+  checkpoints_ = std::move(hands.checkpoints);
+  pins_ = std::move(hands.pins);
+  holds_ = std::move(hands.holds);
   withheld_ = hands.withheld;
   if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
   go_on_from(scene, state);
@@ -379,12 +381,12 @@ void Session::go_on_from(const geo::Scene& scene, const std::string& checkpoint)
   count_pieces();
 }
 
-void Session::go_back(const std::string& state) {
+void Session::restore_last(const std::string& state) {
   const Saved last = std::move(saved_.back());
   saved_.pop_back();
   const geo::Scene scene = scene_at(last).first;
   changes_.resize(last.changes);
-  go_on(scene, state, last.frame, last.hands);
+  resume(scene, state, last.frame, last.hands);
 }
 
 void Session::undo() {
@@ -394,7 +396,7 @@ void Session::undo() {
   const std::string before = saved_states_.pop();
   undone_states_.push(before);
   undone_states_.push(sim::checkpoint_bytes(run_.body(), run_.state(), setup_.fingerprint));
-  go_back(before);
+  restore_last(before);
   drop_states();
 }
 
@@ -420,7 +422,7 @@ void Session::redo() {
   const std::string after = undone_states_.pop();
   saved_states_.push(undone_states_.pop());
   saved_.push_back(std::move(last.before));
-  go_on(scene, after, last.frame, std::move(last.hands));
+  resume(scene, after, last.frame, std::move(last.hands));
 }
 
 void Session::withhold_weight() {
@@ -431,9 +433,16 @@ void Session::withhold_weight() {
 }
 
 void Session::reset() {
-  saved_.clear(), saved_states_.clear(), undone_.clear(), undone_states_.clear();
-  checkpoints_.clear(), pins_.clear(), changes_.clear(), holds_.clear();
-  dropped_ = false, withheld_.reset();
+  saved_.clear();
+  saved_states_.clear();
+  undone_.clear();
+  undone_states_.clear();
+  checkpoints_.clear();
+  pins_.clear();
+  changes_.clear();
+  holds_.clear();
+  dropped_ = false;
+  withheld_.reset();
   go_on_from(setup_.scene, start_);
 }
 
@@ -560,7 +569,7 @@ std::string Session::advance(bool whole) {
     if (saved_.empty())
       reset();
     else
-      go_back(saved_states_.pop());
+      restore_last(saved_states_.pop());
     return reason;
   }
   has_cut_ = faces_ != run_.body().surface.face_count();
@@ -568,7 +577,10 @@ std::string Session::advance(bool whole) {
   const bool cut_by_hand = std::any_of(blades_.begin(), blades_.end(), [&](const auto& entry) {
     return entry.second.blade && entry.second.faces != faces_;
   });
-  if (cut_by_hand) undone_.clear(), undone_states_.clear();
+  if (cut_by_hand) {
+    undone_.clear();
+    undone_states_.clear();
+  }
   const bool ended = end_hands();
   if (faces_ != counted_faces_ && (ended || !has_cut_ || ++since_count_ >= count_interval)) count_pieces();
   return {};

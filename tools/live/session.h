@@ -50,7 +50,7 @@ class Session {
   void withhold_weight();
   /// Begins anew.
   void reset();
-  /// Ends all strokes and grabs of a page. Springs that stay are nobody's.
+  /// Ends all strokes and grabs of a page. Springs that stay belong to no page.
   void leave(ClientId page);
   /// Accuracy and steps of the frames to come.
   Effort effort() const;
@@ -67,8 +67,8 @@ class Session {
   std::string advance(bool whole = false);
 
   /// Ends strokes where their edges are, if they were released `most` seconds ago or earlier, and
-  /// returns their number. `seconds`: simulated in the last frame. So an edge far behind its pointer
-  /// does not cut long after the hand has moved, while a slow machine has the time that it needs.
+  /// returns their number. `seconds`: simulated in the last frame. So an edge far behind its
+  /// pointer does not cut long after the hand has moved, and a slow machine has the time it needs.
   std::size_t end_late_strokes(double seconds, double most);
 
   /// Statistics of the last frame.
@@ -136,7 +136,7 @@ class Session {
     geo::Vec3 material, world;
     double radius;
   };
-  // What a run holds besides its body: all that hands have in it.
+  // All that hands have in a run.
   struct InHands {
     std::vector<int> checkpoints;
     std::vector<HeldPin> pins;
@@ -151,8 +151,8 @@ class Session {
     std::size_t blades, grips, pulls, changes;  // of the run; changes: by hands and effort
     InHands hands;
   };
-  // What going back to a saved state removes from the scene: by index, all that was added or has
-  // changed since; and the changes of values after the saved ones.
+  // The parts of a scene that are not yet there in a saved state: by index, all that was added or
+  // has changed since; and the changes of values after the saved ones.
   struct Removed {
     std::map<std::size_t, geo::Blade> blades;
     std::map<std::size_t, geo::Grip> grips;
@@ -173,9 +173,9 @@ class Session {
   // The scene with what was there at a saved state, and what was removed from it.
   std::pair<geo::Scene, Removed> scene_at(const Saved& saved) const;
   // Continues with a scene from a state.
-  void go_on(const geo::Scene& scene, const std::string& state, int frame, InHands hands);
+  void resume(const geo::Scene& scene, const std::string& state, int frame, InHands hands);
   // Goes to the last saved stroke, whose state is given.
-  void go_back(const std::string& state);
+  void restore_last(const std::string& state);
   // Changes values of the run. Throws InputError for values that a scene may not have.
   void change_run(geo::SceneChange change);
   // Continues as `scene` from a checkpoint, without hands.

@@ -336,9 +336,9 @@ TEST_CASE("a saved file is asked of the simulation, and comes with a harmless na
   simulation.join();
 }
 
-// The status and body of a POST with a body.
+// The status and body of a POST. `announced`: size of the body by its header, if not its own.
 std::pair<int, std::string> posted(const Served& s, const std::string& target, const std::string& body,
-                                   const std::string& origin) {
+                                   const std::string& origin, std::uint64_t announced = 0) {
   net::io_context io;
   tcp::socket socket(io);
   socket.connect({net::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(s.port())});
@@ -347,6 +347,7 @@ std::pair<int, std::string> posted(const Served& s, const std::string& target, c
   request.set(beast::http::field::origin, origin);
   request.body() = body;
   request.prepare_payload();
+  if (announced > 0) request.content_length(announced);
   beast::http::write(socket, request);
   beast::flat_buffer buffer;
   beast::http::response<beast::http::string_body> response;
@@ -360,6 +361,8 @@ TEST_CASE("a model is opened for the page itself only, and what is wrong with it
   CHECK(posted(s, target, "OFF", "http://evil.example").first == 403);
   CHECK(posted(s, "/0123456789abcdee/open?name=a", "OFF", own).first == 404);
   CHECK(posted(s, "/" + token + "/save?as=ply", "OFF", own).first == 405);
+  CHECK(posted(s, target, "", own, std::uint64_t(1) << 29) ==
+        std::pair<int, std::string>(413, "the file has more than 256 MB\n"));
   std::string name, bytes;
   std::thread simulation([&] {
     auto requests = wait_for<Open>(s.inbox, 1);

@@ -399,7 +399,7 @@ TEST_CASE("redo makes undone cuts again, to the bit, with all that hands did the
   CHECK(replayed(session) == surface_bytes(session.run()));
 }
 
-TEST_CASE("a grab that stays is nobody's, takes two keys while it rests, and is taken up again") {
+TEST_CASE("a grab that stays outlives its page, takes two keys while it rests, and is taken up again") {
   Session session(setup(), {});
   shown(session);
   Grab grab{9, 3, Phase::begin, {5, {0.4, 0.3, 0.3}}, {0.5, 0.5, 1.5}};

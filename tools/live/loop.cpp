@@ -133,9 +133,9 @@ class Loop {
   }
   bool obey(ClientId, Open& open) {
     try {
-      Shown next = options_.open(open.name, std::move(open.bytes));
-      shown_.session.reset();  // its memory goes before more is taken
-      shown_ = std::move(next);
+      if (!options_.open) throw BadMessage("no model can be opened here");
+      shown_ = options_.open(open.name, std::move(open.bytes));
+      release_free_memory();
       begin();
       for (const ClientId page : pages_)
         for (const std::string& note : shown_.notes) server_.tell(page, "notice", note);

@@ -22,10 +22,10 @@ struct Shown {
 };
 
 struct LoopOptions {
-  double linger = 30;             ///< s without a page before the loop ends; 0: never
-  std::function<bool()> keep_on;  ///< asked several times a second; false ends the loop
+  double linger = 30;                  ///< s without a page before the loop ends; 0: never
+  std::function<bool()> keep_on = {};  ///< asked several times a second; false ends the loop
   /// Opens a model from the bytes of a file with this name. Throws geo::InputError.
-  std::function<Shown(const std::string& name, std::string bytes)> open;
+  std::function<Shown(const std::string& name, std::string bytes)> open = {};
 };
 
 enum class LoopEnd {

@@ -291,6 +291,7 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
     parser_.body_limit(largest_model);
     socket_.expires_after(request_time);
     http::async_read_header(socket_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error == http::error::body_limit) return self->refuse_size();
       if (!error) self->answer();
     });
   }
@@ -329,11 +330,12 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
       return send(http::status::forbidden, "wrong origin");
     socket_.expires_after(request_time * 6);
     http::async_read(socket_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (error == http::error::body_limit)
-        return self->send(http::status::payload_too_large,
-                          "the file has more than " + std::to_string(largest_model >> 20) + " MB");
+      if (error == http::error::body_limit) return self->refuse_size();
       if (!error) self->open();
     });
+  }
+  void refuse_size() {
+    send(http::status::payload_too_large, "the file has more than " + std::to_string(largest_model >> 20) + " MB");
   }
   void open() {
     const std::string target(view(parser_.get().target()));

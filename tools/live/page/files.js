@@ -1,5 +1,5 @@
 // A model that is dropped on the page is opened in place of the one that is shown.
-const openable = /\.(obj|ply|stl|off|glb)$/i;
+const openable = /\.(obj|ply|stl|off|glb)$/i, largestModel = 256;  // MB, as the program takes them
 
 function listenToFiles() {
   const drops = (e) => e.dataTransfer?.types.includes("Files");
@@ -20,6 +20,7 @@ async function openFiles(files) {
   const models = files.filter((file) => openable.test(file.name));
   if (models.length !== 1) return notice({ error: models.length === 0 ? `${files[0]?.name ?? "This"} cannot be opened here: drop a model (OBJ, PLY, STL, OFF or GLB)` : "Drop one model at a time" });
   const [file] = models;
+  if (file.size > largestModel << 20) return notice({ error: `${file.name} has more than ${largestModel} MB` });
   endStroke();
   $("wait").textContent = `Opening ${file.name} …`, $("wait").hidden = false;
   try {

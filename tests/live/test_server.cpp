@@ -336,7 +336,7 @@ TEST_CASE("a saved file is asked of the simulation, and comes with a harmless na
   simulation.join();
 }
 
-// The status and body of a POST. `announced`: size of the body by its header, if not its own.
+// The status and body of a POST. `announced`: size of its body by the header; 0: its own.
 std::pair<int, std::string> posted(const Served& s, const std::string& target, const std::string& body,
                                    const std::string& origin, std::uint64_t announced = 0) {
   net::io_context io;

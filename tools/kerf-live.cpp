@@ -2,7 +2,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
+#include <kerf/error.h>
 #include <kerf/files.h>
 #include "live/bare_model.h"
 #include "live/browser.h"
@@ -24,15 +26,40 @@ struct Command {
   bool no_browser = false, no_blades = false;
 };
 
-sim::Setup read(const Command& command, const tool::Tool& t) {
-  const geo::SceneOverrides overrides = sim::parse_overrides(command.settings);
-  sim::Setup setup = live::is_scene(command.scene)
-                         ? sim::read_setup(command.scene, overrides)
-                         : live::bare_model(command.scene, command.nodes, command.up[0], overrides);
+// Makes a run of a scene or model, and warns of what may not be as meant.
+live::Shown shown(const Command& command, const std::string& path, live::BareModel read, const tool::Tool& t) {
+  sim::Setup& setup = read.setup;
   live::adapt_scene(setup.scene, command.rate, !command.no_blades);
   sim::warn_of_large_models(setup, t);
-  sim::tell_touching_bodies(setup, "kerf-live", t);
-  return setup;
+  sim::tell_touching_bodies(setup, t.name(), t);
+  live::Shown shown{.name = fs::path(path).stem().string(), .waits = !live::is_scene(path), .notes = read.notes};
+  shown.session = std::make_unique<live::Session>(setup, t.progress());
+  sim::warn_of_coarse_models(setup, shown.session->run().body(), t);
+  sim::warn_of_empty_grips(setup, shown.session->run().body(), t);
+  return shown;
+}
+
+live::BareModel read_model(const Command& command, const std::string& path, const std::string& bytes,
+                           const tool::Tool& t) {
+  live::BareModel model =
+      live::bare_model(path, bytes, command.nodes, command.up[0], sim::parse_overrides(command.settings));
+  for (const std::string& note : model.notes) t.say(t.name() + ": " + note);
+  return model;
+}
+
+live::Shown open_command(const Command& command, const tool::Tool& t) {
+  if (live::is_scene(command.scene))
+    return shown(command, command.scene, {sim::read_setup(command.scene, sim::parse_overrides(command.settings)), {}},
+                 t);
+  return shown(command, command.scene, read_model(command, command.scene, geo::read_all(command.scene), t), t);
+}
+
+// A model that was dropped on the page.
+live::Shown open_dropped(const Command& command, const std::string& name, const std::string& bytes,
+                         const tool::Tool& t) {
+  if (live::is_scene(name))
+    throw geo::InputError(name + ": is a scene, which names other files: start kerf-live with it");
+  return shown(command, name, read_model(command, name, bytes, t), t);
 }
 
 void require_options(const Command& command) {
@@ -43,29 +70,48 @@ void require_options(const Command& command) {
   if (!command.record.empty()) geo::require_writable(command.record);
 }
 
+// Where to write what hands did; empty: nowhere. A run that ended without being asked to keeps
+// their work, and overwrites no file.
+std::string record_path(const Command& command, const live::Shown& shown, live::LoopEnd end) {
+  if (!command.record.empty()) return command.record;
+  const geo::Scene recording = shown.session->recording();
+  const geo::Scene& original = shown.session->original();
+  const bool has_work = recording.blades.size() > original.blades.size() ||
+                        recording.pulls.size() > original.pulls.size() ||
+                        recording.grips.size() > original.grips.size();
+  if (end == live::LoopEnd::asked || !has_work) return {};
+  std::string path = shown.name + "-recorded.toml";
+  for (int number = 2; fs::exists(path); ++number) path = shown.name + "-recorded-" + std::to_string(number) + ".toml";
+  return path;
+}
+
+void record(const live::Session& session, const std::string& path, const tool::Tool& t) {
+  const std::string folder = fs::absolute(path).parent_path().string();
+  geo::write_all(path, [&](std::ostream& out) { geo::write_scene(out, session.recording(), folder); });
+  t.say("kerf-live: " + tool::counted(static_cast<std::size_t>(session.run().state().frame), "frame") +
+        ", recorded in " + path);
+}
+
 void serve(const Command& command, const tool::Tool& t) {
   live::limit_free_memory();
   require_options(command);
-  const sim::Setup setup = read(command, t);
-  live::Session session(setup, t.progress());
-  sim::warn_of_coarse_models(setup, session.run().body(), t);
-  sim::warn_of_empty_grips(setup, session.run().body(), t);
+  live::Shown shown = open_command(command, t);
   live::Inbox inbox;
-  const std::string name = fs::path(command.scene).stem().string();
+  live::LoopEnd end;
   {
-    live::Server server({command.address, command.port, live::random_token(), live::page_text(), name}, inbox);
+    live::Server server({command.address, command.port, live::random_token(), live::page_text()}, inbox);
     std::cout << server.url() << std::endl;
     const bool opened = !command.no_browser && live::open_browser(server.url());
     t.say(opened ? "kerf-live: opened in the browser; Ctrl-C ends it"
                  : "kerf-live: open this address in a browser; Ctrl-C ends it");
-    live::run_loop(session, inbox, server,
-                   {name, command.linger, &tool::Tool::goes_on, !live::is_scene(command.scene)});
+    const auto open = [&](const std::string& name, const std::string& bytes) {
+      return open_dropped(command, name, bytes, t);
+    };
+    end = live::run_loop(shown, inbox, server, {command.linger, &tool::Tool::goes_on, open});
   }
-  if (command.record.empty()) return;
-  const std::string folder = fs::absolute(command.record).parent_path().string();
-  geo::write_all(command.record, [&](std::ostream& out) { geo::write_scene(out, session.recording(), folder); });
-  t.say("kerf-live: " + tool::counted(static_cast<std::size_t>(session.run().state().frame), "frame") +
-        ", recorded in " + command.record);
+  if (end == live::LoopEnd::deserted)
+    t.say("kerf-live: no page for " + tool::rounded(command.linger) + " s (--linger), so it ends");
+  if (const std::string path = record_path(command, shown, end); !path.empty()) record(*shown.session, path, t);
 }
 
 }  // namespace
@@ -78,7 +124,7 @@ int main(int argc, char** argv) {
                "bear.toml && kerf-sim bear.toml -o out/bear");
   Command command;
   t.patience = 5;  // a frame may take long
-  t.argument("SCENE|MODEL", command.scene, "Scene file (TOML), or a model: OBJ, PLY, STL or OFF");
+  t.argument("SCENE|MODEL", command.scene, "Scene file (TOML), or a model: OBJ, PLY, STL, OFF or GLB");
   t.option("--port", command.port, "Port to listen at; 0: a free one");
   t.option("--address", command.address, "Address of the interface to listen at; 0.0.0.0: all, for other devices");
   t.option("--rate", command.rate,

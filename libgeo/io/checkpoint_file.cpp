@@ -63,7 +63,8 @@ FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const K
       front.segments.back().push_back(
           {places.next(), v < 0 || v > ~0u ? VertexId() : VertexId(static_cast<std::uint32_t>(v))});
     }
-    if (front.segments.back().size() < 2) file.fail("a front of the run has a segment without ends");
+    // Ends at one place may be one point.
+    if (front.segments.back().empty()) file.fail("a front of the run has a segment without ends");
     front.points.push_back(front.segments.back().front());
   }
   if (front.segments.empty()) file.fail("a front of the run is empty");

@@ -626,8 +626,16 @@ void Simulation::extend_blade(std::size_t blade, int frame, const Pose& pose) {
   append(impl_->scene.blades.at(blade).motion, key_at(impl_->time_of(state().frame + frame), pose));
 }
 
+// A pull that rests has two keys, however long it does: interpolation between equal positions is
+// exact.
 void Simulation::extend_pull(std::size_t pull, int frame, const Vec3& position) {
-  append(impl_->scene.pulls.at(pull).motion, {impl_->time_of(state().frame + frame), position, Vec3::UnitZ(), 0});
+  Motion& motion = impl_->scene.pulls.at(pull).motion;
+  append(motion, {impl_->time_of(state().frame + frame), position, Vec3::UnitZ(), 0});
+  auto& keys = motion.keys;
+  const auto n = keys.size();
+  if (n < 3 || keys[n - 2].position != position || keys[n - 3].position != position) return;
+  keys[n - 2].time = keys[n - 1].time;
+  keys.pop_back();
 }
 
 void Simulation::end_grip(std::size_t grip) {

@@ -91,8 +91,10 @@ class Strokes {
 class Running {
  public:
   explicit Running(const sim::Setup& s)
-      : session_(s, {}), server_({"127.0.0.1", 0, "token", "", "bench"}, inbox_), loop_([this] {
-          live::run_loop(session_, inbox_, server_, {"bench", 0, [this] { return !stops_.load(); }, false});
+      : shown_{.session = std::make_unique<live::Session>(s, nullptr), .name = "bench"},
+        server_({"127.0.0.1", 0, "token", ""}, inbox_),
+        loop_([this] {
+          live::run_loop(shown_, inbox_, server_, {.linger = 0, .keep_on = [this] { return !stops_.load(); }});
         }) {}
   ~Running() {
     stops_ = true;
@@ -101,7 +103,7 @@ class Running {
   std::string url() const { return server_.url(); }
 
  private:
-  live::Session session_;
+  live::Shown shown_;
   live::Inbox inbox_;
   live::Server server_;
   std::atomic<bool> stops_{false};

@@ -61,6 +61,11 @@ class Client {
     while (!error) ws_.read(buffer, error);
     return true;
   }
+  /// Reads until the server ends the connection; the code that it gives.
+  int closed_with() {
+    is_closed();
+    return ws_.reason().code;
+  }
 
   PageModel page;
   std::size_t bytes = 0;  ///< of the last message

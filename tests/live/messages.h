@@ -20,6 +20,13 @@ inline std::vector<std::string> sample_messages() {
       R"({"reset":true})",
       R"({"pause":false})",
       R"({"step":true})",
+      R"({"knife":{"id":3,"phase":"move","input":21,"eye":[0,-6,0],"ray":[0,1,0],"depth":9,"from":1,)"
+      R"("way":[[0,2,0,3],[1,0,0,0.5]]}})",
+      R"({"scalpel":{"id":4,"phase":"end","input":22,"point":[0,0,1],"normal":[0,0,1],"depth":0.4,)"
+      R"("way":[[1,0,1,0,0,2]]}})",
+      R"({"grab":{"id":6,"phase":"begin","input":23,"held":2,"to":[1,2,3]}})",
+      R"({"grab":{"id":6,"phase":"hold","input":24,"held":2,"to":[1,2,3]}})",
+      R"({"redo":true})",
   };
 }
 

@@ -1,4 +1,4 @@
-"""Scenes in kerf-live and a page that shows them, for the checks of check_live.py and check_controls.py.
+"""Scenes in kerf-live and a page that shows them, for the checks of check_live.py, check_controls.py and check_newcomer.py.
 
 A check that imports this is called as `CHECK TOOLS_DIR SCENES_DIR MODELS_DIR CASE...`; cases are functions of the check, run by run().
 """

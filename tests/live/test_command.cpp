@@ -50,6 +50,25 @@ TEST_CASE("each kind of message is read") {
   CHECK(std::holds_alternative<Reset>(read_command(samples[9])));
   CHECK_FALSE(std::get<Pause>(read_command(samples[10])).on);
   CHECK(std::holds_alternative<Step>(read_command(samples[11])));
+  const auto path = std::get<Stroke>(read_command(samples[12]));
+  REQUIRE(path.way.size() == 2);
+  CHECK((path.way[0].origin == geo::Vec3(0, -3, 0) && path.way[0].direction == geo::Vec3(0, 1, 0)));
+  CHECK((path.way[1].origin == geo::Vec3(0.5, -6, 0) && path.way[1].direction == geo::Vec3(1, 0, 0)));
+  const auto surface_path = std::get<Stroke>(read_command(samples[13]));
+  REQUIRE(surface_path.way.size() == 1);
+  CHECK((surface_path.way[0].origin - surface_path.origin - geo::Vec3(1, 0, 0)).norm() < 1e-12);
+  CHECK(surface_path.way[0].direction == surface_path.direction);
+  CHECK(std::get<Grab>(read_command(samples[14])).held == 2u);
+  CHECK(std::get<Grab>(read_command(samples[15])).phase == Phase::hold);
+  CHECK(std::holds_alternative<Redo>(read_command(samples[16])));
+}
+
+TEST_CASE("a path that is too long loses every second pose") {
+  std::vector<EdgePose> path;
+  for (std::size_t i = 0; i < 3 * longest_path; ++i) add_pose(path, {geo::Vec3(double(i), 0, 0)});
+  CHECK(path.size() <= longest_path);
+  CHECK(path.back().origin.x() == double(3 * longest_path - 1));
+  for (std::size_t i = 1; i < path.size(); ++i) REQUIRE(path[i].origin.x() > path[i - 1].origin.x());
 }
 
 TEST_CASE("each fault of a message has its reason") {
@@ -84,6 +103,11 @@ TEST_CASE("each fault of a message has its reason") {
   CHECK(reason(with("\"depth\":1", "\"depth\":-1")).find("'knife.depth' must be from") == 0);
   CHECK(reason(with("\"depth\":1", "\"depth\":null")) == "'knife.depth' must be a number");
   CHECK(reason(with("\"id\":1", "\"id\":1.5")).find("'knife.id' must be a whole number") == 0);
+  CHECK(reason(with("\"from\":0", "\"from\":0,\"way\":[[0,1,0]]")) == "'knife.way' must be rows of 4 numbers");
+  CHECK(reason(with("\"from\":0", "\"from\":0,\"way\":[[0,0,0,1]]")) == "'knife.way' must be a direction");
+  CHECK(reason(with("\"from\":0", "\"from\":0,\"way\":[[0,1,0,-1]]")).find("'knife.way' must be from") == 0);
+  CHECK(reason(with("\"from\":0", "\"from\":0,\"way\":3")) == "'knife.way' must be a list of at most 64");
+  CHECK(reason(with("begin", "hold")) == "'knife.phase' must be \"begin\", \"move\" or \"end\"");
   CHECK(reason(std::string(longest_message + 1, ' ')).find("longer than 4096 bytes") != std::string::npos);
   CHECK(reason(std::string(4000, '[')) == "the message is nested too deeply");
 }

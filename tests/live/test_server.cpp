@@ -28,8 +28,7 @@ namespace {
 const std::string token = "0123456789abcdef";
 
 struct Served {
-  explicit Served(const std::string& address = "127.0.0.1")
-      : server({address, 0, token, "<html>page</html>", "a b/c"}, inbox) {}
+  explicit Served(const std::string& address = "127.0.0.1") : server({address, 0, token, "<html>page</html>"}, inbox) {}
   Inbox inbox;
   Server server;
   int port() const {
@@ -70,7 +69,8 @@ std::shared_ptr<Snapshot> snapshot(std::uint64_t number, std::uint32_t revision 
   s->number = number, s->time = double(number) / 60, s->topology = t;
   s->positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, double(number)}};
   s->node_count = 2, s->statistics = "{\"number\":" + std::to_string(number);
-  s->scene = std::make_shared<std::string>("{\"name\":\"test\"}");
+  static const auto scene = std::make_shared<const std::string>("{\"name\":\"test\"}");
+  s->scene = scene;
   return s;
 }
 
@@ -113,8 +113,8 @@ TEST_CASE("only the printed address answers") {
   CHECK(
       answer(s, "/0123456789abcdee/live", s.host(), beast::http::verb::get, "websocket", "http://" + s.host()).first ==
       404);
-  CHECK_THROWS_AS(Server({"127.0.0.1", s.port(), token, "", ""}, s.inbox), geo::InputError);
-  CHECK_THROWS_AS(Server({"nowhere", 0, token, "", ""}, s.inbox), geo::InputError);
+  CHECK_THROWS_AS(Server({"127.0.0.1", s.port(), token, ""}, s.inbox), geo::InputError);
+  CHECK_THROWS_AS(Server({"nowhere", 0, token, ""}, s.inbox), geo::InputError);
 }
 
 // Whether this machine has an interface for IPv6.
@@ -326,13 +326,79 @@ TEST_CASE("a saved file is asked of the simulation, and comes with a harmless na
   Served s;
   std::thread simulation([&] {
     auto requests = wait_for<Save>(s.inbox, 1);
-    std::get<Save>(requests[0].what).answer("bytes of " + std::get<Save>(requests[0].what).format, "");
+    std::get<Save>(requests[0].what)
+        .answer({.bytes = "bytes of " + std::get<Save>(requests[0].what).format, .name = "a b/c"});
     requests = wait_for<Save>(s.inbox, 1);
-    std::get<Save>(requests[0].what).answer("", "no such thing");
+    std::get<Save>(requests[0].what).answer({.error = "no such thing"});
   });
   CHECK(answer(s, "/" + token + "/save?as=ply", s.host()) == std::pair<int, std::string>(200, "bytes of ply"));
   CHECK(answer(s, "/" + token + "/save?as=toml", s.host()).first == 500);
   simulation.join();
+}
+
+// The status and body of a POST. `announced`: size of its body by the header; 0: its own.
+std::pair<int, std::string> posted(const Served& s, const std::string& target, const std::string& body,
+                                   const std::string& origin, std::uint64_t announced = 0) {
+  net::io_context io;
+  tcp::socket socket(io);
+  socket.connect({net::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(s.port())});
+  beast::http::request<beast::http::string_body> request(beast::http::verb::post, target, 11);
+  request.set(beast::http::field::host, s.host());
+  request.set(beast::http::field::origin, origin);
+  request.body() = body;
+  request.prepare_payload();
+  if (announced > 0) request.content_length(announced);
+  beast::http::write(socket, request);
+  beast::flat_buffer buffer;
+  beast::http::response<beast::http::string_body> response;
+  beast::http::read(socket, buffer, response);
+  return {static_cast<int>(response.result_int()), response.body()};
+}
+
+TEST_CASE("a model is opened for the page itself only, and what is wrong with it is answered") {
+  Served s;
+  const std::string target = "/" + token + "/open?name=a%20b%2fc%zz.off", own = "http://" + s.host();
+  CHECK(posted(s, target, "OFF", "http://evil.example").first == 403);
+  CHECK(posted(s, "/0123456789abcdee/open?name=a", "OFF", own).first == 404);
+  CHECK(posted(s, "/" + token + "/save?as=ply", "OFF", own).first == 405);
+  CHECK(posted(s, target, "", own, std::uint64_t(1) << 29) ==
+        std::pair<int, std::string>(413, "the file has more than 256 MB\n"));
+  std::string name, bytes;
+  std::thread simulation([&] {
+    auto requests = wait_for<Open>(s.inbox, 1);
+    auto& open = std::get<Open>(requests[0].what);
+    name = open.name, bytes = open.bytes;
+    open.answer({});
+    requests = wait_for<Open>(s.inbox, 1);
+    std::get<Open>(requests[0].what).answer({.error = "a.off: is open"});
+  });
+  CHECK(posted(s, target, "OFF 3", own).first == 200);
+  CHECK(posted(s, target, "OFF", own) == std::pair<int, std::string>(422, "a.off: is open\n"));
+  simulation.join();
+  CHECK(name == "a b/c%zz.off");
+  CHECK(bytes == "OFF 3");
+}
+
+TEST_CASE("a page gets the whole state of another scene, and is told of the end") {
+  std::optional<Served> s(std::in_place);
+  s->server.publish(snapshot(1));
+  Client page(s->server.url());
+  CHECK(page.next().kind == 1);
+  page.acknowledge();
+  const auto scene = std::make_shared<std::string>("{\"name\":\"test\"}");
+  const auto show = [&](std::uint64_t number) {
+    auto next = snapshot(number);
+    next->scene = scene;
+    s->server.publish(next);
+    const int kind = page.next().kind;
+    page.acknowledge();
+    return kind;
+  };
+  CHECK(show(2) == 1);
+  CHECK(show(3) == 3);
+  std::thread end([&] { s.reset(); });
+  CHECK(page.closed_with() == 1001);
+  end.join();
 }
 
 // The request of a file that a page asks for, which has not been answered.
@@ -361,7 +427,7 @@ TEST_CASE("the request of a file keeps no connection open and may outlive the se
   std::optional<Served> s(std::in_place);
   const Request request = asked_file(*s, page);
   SECTION("answered") {
-    std::get<Save>(request.what).answer("bytes", "");
+    std::get<Save>(request.what).answer({.bytes = "bytes"});
     beast::flat_buffer buffer;
     beast::http::response<beast::http::string_body> response;
     beast::http::read(page, buffer, response);
@@ -371,7 +437,7 @@ TEST_CASE("the request of a file keeps no connection open and may outlive the se
   CHECK(is_closed_by_other_end(page));
 }
 
-TEST_CASE("a move replaces the move before it, and nothing is put behind a full queue") {
+TEST_CASE("a move takes the place of the move before it and keeps the path, and nothing is put behind a full queue") {
   Inbox inbox;
   const auto stroke = [](std::uint64_t id, Phase phase, double x) {
     Stroke s;
@@ -388,6 +454,9 @@ TEST_CASE("a move replaces the move before it, and nothing is put behind a full 
   REQUIRE(all.size() == 6);
   CHECK(std::get<Stroke>(std::get<Command>(all[1].what)).origin.x() == 8);
   CHECK(std::get<Stroke>(std::get<Command>(all[2].what)).origin.x() == -8);
+  const auto& way = std::get<Stroke>(std::get<Command>(all[1].what)).way;
+  REQUIRE(way.size() == 7);
+  for (int i = 1; i < 8; ++i) CHECK(way[static_cast<std::size_t>(i - 1)].origin.x() == i);
   for (int i = 0; i < 2000; ++i) inbox.put({1, Command(Undo{})});
   CHECK_FALSE(inbox.put({1, Command(Undo{})}));
   CHECK(inbox.put({1, Leave{}}));

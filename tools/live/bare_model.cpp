@@ -38,16 +38,23 @@ bool is_scene(const std::string& path) {
   return ending == ".toml" || ending == ".json";
 }
 
-sim::Setup bare_model(const std::string& path, int nodes, char up, const geo::SceneOverrides& overrides) {
-  const std::string bytes = geo::read_all(path);
-  geo::TriangleMesh mesh = tool::parse_solid(bytes, path).mesh;
+BareModel bare_model(const std::string& path, const std::string& bytes, int nodes, char up,
+                     const geo::SceneOverrides& overrides) {
+  geo::SurfaceFile file = tool::parse_solid(bytes, path);
+  BareModel result;
+  const std::string name = std::filesystem::path(path).filename().string();
+  for (const std::string& note : file.notes) result.notes.push_back(name + ": " + note);
+  geo::TriangleMesh& mesh = file.mesh;
   tool::require_whole(mesh, path, "a scene begins with whole models");
+  const geo::Attributes& attributes = mesh.attributes;
+  if (!attributes.materials.empty() || attributes.library != geo::MaterialLibrary() || !attributes.uv.empty())
+    result.notes.push_back(name + ": materials and images are not shown, and files that are saved here have none");
   mesh.attributes.library = {};  // each frame would hold its images
-  sim::Setup setup;
+  sim::Setup& setup = result.setup;
   setup.scene = geo::parse_scene(scene_of(mesh, path, nodes, up), path, overrides);
   setup.models = geo::place_models(setup.scene, {std::move(mesh)});
   setup.fingerprint = setup.scene.fingerprint;
-  return setup;
+  return result;
 }
 
 }  // namespace live

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <kerf/files.h>
 #include "sim/setup.h"
@@ -11,9 +12,16 @@ namespace live {
 /// True where a file is a scene by its name: .toml or .json.
 bool is_scene(const std::string& path);
 
+/// A setup of a model, and sentences about what of its file is left out.
+struct BareModel {
+  sim::Setup setup;
+  std::vector<std::string> notes;
+};
+
 /// A soft body of `nodes` nodes that stands on the ground, in gravity, with self-contact. Lengths
 /// and stiffness are scaled to the model's size, so that it sags little, whatever its units. `up`:
-/// the vertical axis, 'y' or 'z'.
-sim::Setup bare_model(const std::string& path, int nodes, char up, const geo::SceneOverrides& overrides);
+/// the vertical axis, 'y' or 'z'. `path` names the file that the bytes are of.
+BareModel bare_model(const std::string& path, const std::string& bytes, int nodes, char up,
+                     const geo::SceneOverrides& overrides);
 
 }  // namespace live

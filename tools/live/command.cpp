@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <initializer_list>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -13,8 +16,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double farthest = 1e9;  // coordinate, model units
-constexpr int deepest = 8;        // nesting
+constexpr double farthest = 1e9;       // coordinate, model units
+constexpr int deepest = 8;             // nesting
+constexpr std::size_t most_rows = 64;  // of a list: more do not fit into a message
 
 void require_shallow(std::string_view text) {
   int depth = 0;
@@ -33,7 +37,7 @@ class Table {
   const Json* find(const char* key) {
     const auto at = json_.find(key);
     if (at == json_.end()) return nullptr;
-    ++known_;
+    known_.insert(key);
     return &*at;
   }
   const Json& at(const char* key) {
@@ -65,22 +69,38 @@ class Table {
     const Json* value = find(key);
     return value ? std::optional(as_point(key, *value)) : std::nullopt;
   }
-  geo::Vec3 direction(const char* key) {
-    const geo::Vec3 v = point(key);
+  geo::Vec3 direction(const char* key) { return unit(key, point(key)); }
+  geo::Vec3 unit(const char* key, const geo::Vec3& v) const {
     if (!(v.norm() > 1e-6) || !(v.norm() < 1e6)) fail(key, "a direction");
     return v.normalized();
   }
+  // A list, if it is there, of rows of three numbers and `more` others.
+  std::vector<std::pair<geo::Vec3, std::vector<double>>> pairs(const char* key, std::size_t more) {
+    const Json* value = find(key);
+    if (!value) return {};
+    if (!value->is_array() || value->size() > most_rows) fail(key, "a list of at most " + std::to_string(most_rows));
+    std::vector<std::pair<geo::Vec3, std::vector<double>>> rows;
+    for (const Json& row : *value) {
+      if (!row.is_array() || row.size() != 3 + more) fail(key, "rows of " + std::to_string(3 + more) + " numbers");
+      std::vector<double> x;
+      for (const Json& number : row) x.push_back(in_range(key, number, -farthest, farthest));
+      rows.push_back({{x[0], x[1], x[2]}, {x.begin() + 3, x.end()}});
+    }
+    return rows;
+  }
+  double bounded(const char* key, double x, double least, double most) const {
+    if (!(x >= least && x <= most)) fail(key, "from " + std::to_string(least) + " to " + std::to_string(most));
+    return x;
+  }
   void done() const {
-    if (known_ == json_.size()) return;
+    if (known_.size() == json_.size()) return;
     throw BadMessage("'" + name_ + "' has a key that is not known");
   }
 
  private:
   double in_range(const char* key, const Json& value, double least, double most) const {
     if (!value.is_number()) fail(key, "a number");
-    const double x = value.get<double>();
-    if (!(x >= least && x <= most)) fail(key, "from " + std::to_string(least) + " to " + std::to_string(most));
-    return x;
+    return bounded(key, value.get<double>(), least, most);
   }
   bool as_flag(const char* key, const Json& value) const {
     if (!value.is_boolean()) fail(key, "true or false");
@@ -95,7 +115,7 @@ class Table {
 
   const Json& json_;
   std::string name_;
-  std::size_t known_ = 0;
+  std::set<std::string_view> known_;
 };
 
 constexpr std::uint64_t largest_count = std::uint64_t(1) << 53;  // JavaScript's whole numbers
@@ -108,19 +128,37 @@ Phase phase_of(Table& t) {
   t.fail("phase", "\"begin\", \"move\" or \"end\"");
 }
 
+Phase grab_phase_of(Table& t) { return t.at("phase") == "hold" ? Phase::hold : phase_of(t); }
+
+// The pose of an edge on a ray from the eye, which begins at a distance from it.
+EdgePose on_ray(const geo::Vec3& eye, const geo::Vec3& ray, double from) { return {eye + from * ray, ray}; }
+
+// The pose of an edge `depth` long across a surface. It begins above the surface, at a quarter of
+// its depth.
+constexpr double share_above = 0.25;
+EdgePose across_surface(const geo::Vec3& point, const geo::Vec3& normal, double depth) {
+  return {point + share_above * depth * normal, -normal};
+}
+
 Stroke knife_of(Table& t) {
-  Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), t.point("eye"),
+  const geo::Vec3 eye = t.point("eye");
+  Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), eye,
            t.direction("ray"),           t.number("depth", 1e-9, farthest)};
-  s.origin += t.number("from", 0, farthest) * s.direction;
+  s.origin = on_ray(eye, s.direction, t.number("from", 0, farthest)).origin;
+  for (const auto& [ray, from] : t.pairs("way", 1))
+    s.way.push_back(on_ray(eye, t.unit("way", ray), t.bounded("way", from[0], 0, farthest)));
   return s;
 }
 
-// The edge begins as far above the surface as it reaches below it, at most a tenth of its depth.
 Stroke scalpel_of(Table& t) {
   Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), t.point("point"),
-           -t.direction("normal"),       t.number("depth", 1e-9, farthest)};
-  const double above = 0.25 * s.depth;
-  s.origin -= above * s.direction, s.depth += above, s.above = above;
+           t.direction("normal"),        t.number("depth", 1e-9, farthest)};
+  for (const auto& [point, normal] : t.pairs("way", 3))
+    s.way.push_back(across_surface(point, t.unit("way", {normal[0], normal[1], normal[2]}), s.depth));
+  const EdgePose pose = across_surface(s.origin, s.direction, s.depth);
+  s.origin = pose.origin, s.direction = pose.direction;
+  s.above = share_above * s.depth;
+  s.depth += *s.above;
   return s;
 }
 
@@ -131,11 +169,14 @@ Spot spot_of(Table& t) {
 }
 
 Grab grab_of(Table& t) {
-  Grab g{t.count("id", largest_count), t.count("input", largest_count), phase_of(t), {}, t.point("to")};
-  if (g.phase == Phase::begin)
+  Grab g{t.count("id", largest_count), t.count("input", largest_count), grab_phase_of(t), {}, t.point("to")};
+  if (t.find("held")) g.held = t.count("held", largest_count);
+  if (g.phase == Phase::begin && !g.held) {
     g.spot = spot_of(t);
-  else
-    t.find("face"), t.find("bary");
+  } else {
+    t.find("face");
+    t.find("bary");
+  }
   return g;
 }
 
@@ -177,6 +218,7 @@ Command command_of(const std::string& key, const Json& value) {
   if (key == "pin") return inner(value, key, pin_of);
   if (key == "set") return inner(value, key, set_of);
   if (key == "undo") return sign<Undo>(value, key);
+  if (key == "redo") return sign<Redo>(value, key);
   if (key == "reset") return sign<Reset>(value, key);
   if (key == "step") return sign<Step>(value, key);
   if (key == "pause") {
@@ -187,6 +229,15 @@ Command command_of(const std::string& key, const Json& value) {
 }
 
 }  // namespace
+
+void add_pose(std::vector<EdgePose>& path, const EdgePose& pose) {
+  if (path.size() >= longest_path) {
+    std::size_t kept = 0;
+    for (std::size_t i = 1; i < path.size(); i += 2) path[kept++] = path[i];
+    path.resize(kept);
+  }
+  path.push_back(pose);
+}
 
 Command read_command(std::string_view text) {
   if (text.size() > longest_message) throw BadMessage("the message is longer than 4096 bytes");

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include <kerf/vec.h>
 
@@ -19,7 +20,8 @@ struct BadMessage : std::runtime_error {
 /// The longest message, in bytes.
 constexpr std::size_t longest_message = 4096;
 
-enum class Phase { begin, move, end };
+/// `hold` ends the hand's part in a grab, whose spring stays.
+enum class Phase { begin, move, end, hold };
 
 /// Confirms that the message with this sequence number was shown.
 struct Acknowledge {
@@ -30,6 +32,10 @@ struct Want {
   std::optional<bool> nodes, stress;
   bool graph = false;
 };
+/// Where an edge is: it begins at `origin`, along `direction` (unit).
+struct EdgePose {
+  geo::Vec3 origin = geo::Vec3::Zero(), direction = geo::Vec3::UnitZ();
+};
 /// The pose of a hand's edge: from `origin` along `direction` (unit), `depth` long.
 struct Stroke {
   std::uint64_t id = 0, input = 0;
@@ -39,7 +45,13 @@ struct Stroke {
   /// Distance from the origin to the point of the surface that the edge follows; none: it follows
   /// the ray.
   std::optional<double> above = {};
+  /// Poses between the message before and this one, in their order.
+  std::vector<EdgePose> way = {};
 };
+/// Appends a pose to the path of an edge. A path of longest_path poses first loses every second
+/// one.
+void add_pose(std::vector<EdgePose>& path, const EdgePose& pose);
+constexpr std::size_t longest_path = 4096;
 /// A point of the surface: barycentric coordinates in the face of a slot.
 struct Spot {
   std::uint32_t face = 0;
@@ -51,6 +63,7 @@ struct Grab {
   Phase phase = Phase::begin;
   Spot spot;  ///< read where the grab begins
   geo::Vec3 to = geo::Vec3::Zero();
+  std::optional<std::uint64_t> held = {};  ///< where it begins: number of the spring that it takes up again
 };
 /// Holds, or frees, the material around a point of the surface.
 struct Pin {
@@ -64,13 +77,14 @@ struct Set {
   std::optional<geo::Vec3> gravity;
 };
 struct Undo {};
+struct Redo {};
 struct Reset {};
 struct Pause {
   bool on = true;
 };
 struct Step {};
 
-using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Set, Undo, Reset, Pause, Step>;
+using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Set, Undo, Redo, Reset, Pause, Step>;
 
 /// Reads a message. Throws BadMessage where it is longer than longest_message, no JSON, of no known
 /// kind, has unknown or missing keys, or values out of range. Throws nothing else.

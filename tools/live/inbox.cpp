@@ -1,4 +1,5 @@
-// Latest wins: while a frame is computed, of a stroke's moves only the last is kept.
+// While a frame is computed, the moves of a stroke become one with the whole path. Grabs keep their
+// last move.
 #include "live/inbox.h"
 
 #include <algorithm>
@@ -14,6 +15,19 @@ std::pair<int, std::uint64_t> moved(const Request& r) {
   if (const auto* stroke = std::get_if<Stroke>(command); stroke && stroke->phase == Phase::move) return {1, stroke->id};
   if (const auto* grab = std::get_if<Grab>(command); grab && grab->phase == Phase::move) return {2, grab->id};
   return {0, 0};
+}
+
+// Replaces a move by a later one of the same kind and number, and keeps the path between them.
+void append_move(Request& move, Request&& later) {
+  auto& command = std::get<Command>(later.what);
+  if (auto* stroke = std::get_if<Stroke>(&command)) {
+    auto& before = std::get<Stroke>(std::get<Command>(move.what));
+    std::vector<EdgePose> path = std::move(before.way);
+    add_pose(path, {before.origin, before.direction});
+    for (const EdgePose& pose : stroke->way) add_pose(path, pose);
+    stroke->way = std::move(path);
+  }
+  move = std::move(later);
 }
 
 }  // namespace
@@ -34,7 +48,7 @@ bool Inbox::put(Request request) {
       for (auto at = requests_.rbegin(); at != requests_.rend(); ++at)
         if (at->page == request.page) {
           if (moved(*at) != key) break;
-          *at = std::move(request);
+          append_move(*at, std::move(request));
           return true;
         }
     const bool people = std::holds_alternative<Join>(request.what) || std::holds_alternative<Leave>(request.what);

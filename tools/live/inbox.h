@@ -17,23 +17,34 @@ namespace live {
 /// A page came, or went.
 struct Join {};
 struct Leave {};
-/// A file is wanted. `answer` may be called on any thread, once, while the server lives: with its
-/// bytes, or with a reason.
+/// The simulation's answer to a request of HTTP.
+struct Answer {
+  std::string error = {};  ///< empty: it was obeyed
+  std::string bytes = {};  ///< of a file
+  std::string name = {};   ///< of the file, without its ending
+};
+/// A file is wanted. `answer` may be called on any thread, once, while the server lives.
 struct Save {
   std::string format;  ///< kerf, ply, glb or toml
-  std::function<void(std::string bytes, std::string error)> answer;
+  std::function<void(Answer)> answer;
+};
+/// A model is to be opened in place of the one that is shown. `answer`: as in Save.
+struct Open {
+  std::string name, bytes;
+  std::function<void(Answer)> answer;
 };
 
 struct Request {
   ClientId page = 0;
-  std::variant<Command, Join, Leave, Save> what;
+  std::variant<Command, Join, Leave, Save, Open> what;
   std::chrono::steady_clock::time_point arrived = {};  ///< set by Inbox::put()
 };
 
 /// Whether a request is the begin of a stroke that waited for `seconds` or longer.
 bool is_late_stroke(const Request& request, std::chrono::steady_clock::time_point now, double seconds);
 
-/// A queue in which a pointer's move replaces the move before it.
+/// A queue in which a pointer's move takes the place of the move before it. Strokes keep their
+/// path.
 class Inbox {
  public:
   /// Appends a request. False where the queue is full; nothing is kept then, except of pages that

@@ -18,24 +18,20 @@ namespace {
 using Clock = Pacer::Clock;
 
 // Seconds by which input may be late. A stroke whose begin waited longer is left out. A stroke ends
-// this long after its pointer was released.
+// this long after its pointer was released, in the time of the simulation.
 constexpr double latest_begin = 1, latest_end = 2;
 
 class Loop {
  public:
-  Loop(Session& session, Inbox& inbox, Server& server, const LoopOptions& options)
-      : session_(session),
-        inbox_(inbox),
-        server_(server),
-        options_(options),
-        pacer_(1 / session.original().frame_rate, session.effort(), session.least_effort()),
-        scene_(std::make_shared<std::string>(scene_text(session, options.name))),
-        effort_(session.effort()),
-        waits_(options.waits) {}
+  Loop(Shown& shown, Inbox& inbox, Server& server, const LoopOptions& options)
+      : shown_(shown), inbox_(inbox), server_(server), options_(options), pacer_(pacer_of(*shown.session)) {
+    begin();
+  }
 
-  void run() {
+  LoopEnd run() {
     publish();
-    while (options_.keep_on() && !is_deserted()) {
+    while (options_.keep_on()) {
+      if (is_deserted()) return LoopEnd::deserted;
       const bool moves = !pages_.empty() && !waits_ && (!paused_ || steps_ > 0);
       const auto soon = Clock::now() + std::chrono::milliseconds(100);
       // Until a frame is due, requests wait for it: so the input is the latest.
@@ -54,21 +50,43 @@ class Loop {
       compute();
       publish();
     }
+    return LoopEnd::asked;
   }
 
  private:
+  static Pacer pacer_of(const Session& session) {
+    return {1 / session.original().frame_rate, session.effort(), session.least_effort()};
+  }
+  Session& session() const { return *shown_.session; }
+
+  // Shows a run from its beginning.
+  void begin() {
+    pacer_ = pacer_of(session());
+    scene_ = std::make_shared<std::string>(scene_text(session(), shown_.name, ++runs_));
+    effort_ = session().effort();
+    paused_ = false;
+    steps_ = 0;
+    graph_ = nullptr;
+    wait();
+  }
+  // A model without a scene waits for a hand, without weight.
+  void wait() {
+    waits_ = shown_.waits;
+    if (waits_) session().withhold_weight();
+  }
+
   void compute() {
     const auto begin = Clock::now();
-    if (const std::string reason = session_.advance(paused_); !reason.empty()) say("went back: " + reason);
-    if (const std::size_t refused = session_.stats().refused; refused > 0)
+    if (const std::string reason = session().advance(paused_); !reason.empty()) say("went back: " + reason);
+    if (const std::size_t refused = session().stats().refused; refused > 0)
       say(std::to_string(refused) + (refused == 1 ? " crack step" : " crack steps") +
           " would have made surfaces cross; the cut goes on where it can");
     const auto end = Clock::now();
     pacer_.add(begin, end);
-    if (session_.end_late_strokes(std::chrono::duration<double>(end - begin).count(), latest_end) > 0)
-      say("frames take too long: a stroke ends where its edge is");
+    if (session().end_late_strokes(1 / session().original().frame_rate, latest_end) > 0)
+      say("the edge is far behind the pointer: a stroke ends where it is");
     steps_ = std::max(0, steps_ - 1);
-    if (const Effort effort = pacer_.effort(); effort != effort_) session_.set_effort(effort), effort_ = effort;
+    if (const Effort effort = pacer_.effort(); effort != effort_) session().set_effort(effort), effort_ = effort;
   }
 
   // Gives freed memory back to the system from time to time.
@@ -96,21 +114,36 @@ class Loop {
   }
   bool obey(ClientId page, Join&) {
     pages_.insert(page), came_ = true;
+    for (const std::string& note : shown_.notes) server_.tell(page, "notice", note);
     return true;
   }
   bool obey(ClientId page, Leave&) {
     pages_.erase(page);
     gone_ = Clock::now();
-    session_.leave(page);
+    session().leave(page);
     return true;
   }
   bool obey(ClientId, Save& save) {
     try {
-      save.answer(saved_file(session_, save.format, {}), {});
+      save.answer({.bytes = saved_file(session(), save.format, {}), .name = shown_.name});
     } catch (const std::exception& e) {
-      save.answer({}, e.what());
+      save.answer({.error = e.what()});
     }
     return false;
+  }
+  bool obey(ClientId, Open& open) {
+    try {
+      if (!options_.open) throw BadMessage("no model can be opened here");
+      shown_ = options_.open(open.name, std::move(open.bytes));
+      release_free_memory();
+      begin();
+      for (const ClientId page : pages_)
+        for (const std::string& note : shown_.notes) server_.tell(page, "notice", note);
+      open.answer({});
+    } catch (const std::exception& e) {
+      open.answer({.error = e.what()});
+    }
+    return true;
   }
   bool obey(ClientId page, Command& command) {
     if (is_touch(command)) waits_ = false;
@@ -125,25 +158,48 @@ class Loop {
   }
   bool obey_command(ClientId, const Acknowledge&) { return false; }
   bool obey_command(ClientId, const Want&) { return true; }
-  bool obey_command(ClientId page, const Stroke& c) { return session_.obey(page, c), false; }
-  bool obey_command(ClientId page, const Grab& c) { return session_.obey(page, c), false; }
-  bool obey_command(ClientId, const Pin& c) { return session_.obey(c), true; }
-  bool obey_command(ClientId, const Set& c) { return session_.obey(c), true; }
-  bool obey_command(ClientId, const Undo&) { return session_.undo(), restart(), true; }
-  bool obey_command(ClientId, const Reset&) { return session_.reset(), restart(), waits_ = options_.waits, true; }
+  // A run that stands still shows that a stroke waits.
+  bool obey_command(ClientId page, const Stroke& c) {
+    session().obey(page, c);
+    return paused_ && c.phase != Phase::move;
+  }
+  bool obey_command(ClientId page, const Grab& c) {
+    session().obey(page, c);
+    return paused_ && c.phase != Phase::move;
+  }
+  bool obey_command(ClientId, const Pin& c) { return session().obey(c), true; }
+  bool obey_command(ClientId, const Set& c) { return session().obey(c), true; }
+  bool obey_command(ClientId, const Undo&) {
+    session().undo();
+    restart();
+    waits_ = shown_.waits && session().is_weightless();
+    return true;
+  }
+  bool obey_command(ClientId, const Redo&) {
+    session().redo();
+    restart();
+    waits_ = false;
+    return true;
+  }
+  bool obey_command(ClientId, const Reset&) {
+    session().reset();
+    restart();
+    wait();
+    return true;
+  }
   bool obey_command(ClientId, const Pause& c) { return paused_ = c.on, true; }
   bool obey_command(ClientId, const Step&) { return paused_ = true, ++steps_, false; }
 
   // After going back, the effort is what the recording says.
-  void restart() { effort_ = session_.effort(), pacer_.restart(); }
+  void restart() { effort_ = session().effort(), pacer_.restart(); }
 
   void say(const std::string& sentence) { message_ = sentence, said_ = Clock::now(); }
 
   void publish() {
     auto s = std::make_shared<Snapshot>();
     s->number = ++number_;
-    session_.show(*s);
-    const geo::Simulation& run = session_.run();
+    session().show(*s);
+    const geo::Simulation& run = session().run();
     if (server_.wants_nodes()) {
       s->nodes = run.body().nodes.position;
       for (std::size_t i = 0; i < s->nodes.size(); ++i) s->nodes[i] += run.state().motion.displacement[i];
@@ -152,7 +208,7 @@ class Loop {
     if (const auto asked = server_.graphs_wanted(); asked != graphs_) graphs_ = asked, graph_ = edges();
     s->graph = graph_, s->graph_number = graphs_;
     s->scene = scene_;
-    s->statistics = statistics_text(session_, pace());
+    s->statistics = statistics_text(session(), pace());
     server_.publish(std::move(s));
   }
   Pace pace() {
@@ -160,18 +216,18 @@ class Loop {
     std::string message = message_;
     if (message.empty() && pacer_.slow())
       message = "slower than real time: " + std::to_string(static_cast<int>(100 * pacer_.rate() + 0.5)) + " %";
-    return {pacer_.fps(), pacer_.rate(), pacer_.step(), session_.effort(), paused_, message};
+    return {pacer_.fps(), pacer_.rate(), pacer_.step(), session().effort(), paused_, message};
   }
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> edges() const {
     auto list = std::make_shared<std::vector<std::pair<std::uint32_t, std::uint32_t>>>();
-    const geo::Body& body = session_.run().body();
+    const geo::Body& body = session().run().body();
     for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
       for (const geo::NodeId j : body.graph.edges(geo::NodeId(i)))
         if (j.value > i && j.value < body.nodes.size()) list->push_back({i, j.value});
     return list;
   }
 
-  Session& session_;
+  Shown& shown_;
   Inbox& inbox_;
   Server& server_;
   const LoopOptions& options_;
@@ -179,19 +235,19 @@ class Loop {
   std::shared_ptr<const std::string> scene_;
   std::set<ClientId> pages_;
   bool came_ = false, paused_ = false;
-  int steps_ = 0;  // to be made while paused
-  Effort effort_;  // in force, unless the scene changes it
-  bool waits_;     // for the first touch
+  int steps_ = 0;       // to be made while paused
+  Effort effort_;       // in force, unless the scene changes it
+  bool waits_ = false;  // for the first touch
   Clock::time_point gone_ = Clock::now(), said_ = Clock::now(), released_ = Clock::now();
   std::string message_;
-  std::uint64_t number_ = 0, graphs_ = 0;
+  std::uint64_t number_ = 0, graphs_ = 0, runs_ = 0;
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> graph_;
 };
 
 }  // namespace
 
-void run_loop(Session& session, Inbox& inbox, Server& server, const LoopOptions& options) {
-  Loop(session, inbox, server, options).run();
+LoopEnd run_loop(Shown& shown, Inbox& inbox, Server& server, const LoopOptions& options) {
+  return Loop(shown, inbox, server, options).run();
 }
 
 }  // namespace live

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "live/inbox.h"
 #include "live/server.h"
@@ -10,14 +12,29 @@
 
 namespace live {
 
+/// A run, and how it is shown.
+struct Shown {
+  std::unique_ptr<Session> session = {};
+  std::string name = {};  ///< of the scene or model
+  /// Time stands still, and nothing weighs, until a hand touches the body; after a reset, too.
+  bool waits = false;
+  std::vector<std::string> notes = {};  ///< sentences for each page that comes
+};
+
 struct LoopOptions {
-  std::string name;               ///< of the scene
-  double linger = 30;             ///< s without a page before the loop ends; 0: never
-  std::function<bool()> keep_on;  ///< asked several times a second; false ends the loop
-  bool waits = false;             ///< time stands still until a hand touches the body, after a reset, too
+  double linger = 30;                  ///< s without a page before the loop ends; 0: never
+  std::function<bool()> keep_on = {};  ///< asked several times a second; false ends the loop
+  /// Opens a model from the bytes of a file with this name. Throws geo::InputError.
+  std::function<Shown(const std::string& name, std::string bytes)> open = {};
+};
+
+enum class LoopEnd {
+  asked,    ///< keep_on() was false
+  deserted  ///< no page was there for a while
 };
 
 /// Runs until keep_on() is false, or no page is there for `linger` seconds after the last one went.
-void run_loop(Session& session, Inbox& inbox, Server& server, const LoopOptions& options);
+/// `shown` changes where a page opens another model.
+LoopEnd run_loop(Shown& shown, Inbox& inbox, Server& server, const LoopOptions& options);
 
 }  // namespace live

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 #include "sim/whole_run.h"
@@ -47,9 +49,21 @@ Json obstacles_of(const geo::Scene& scene) {
   return list;
 }
 
+// The least and the largest coefficient of friction of all that touches in a scene; of the ground
+// where nothing does.
+std::pair<double, double> frictions_of(const geo::Scene& scene) {
+  std::vector<double> all;
+  if (scene.ground) all.push_back(scene.friction);
+  if (scene.self_contact) all.push_back(scene.contact.friction);
+  for (const geo::SceneObstacle& o : scene.obstacles) all.push_back(o.friction);
+  if (all.empty()) all.push_back(scene.friction);
+  const auto [least, most] = std::minmax_element(all.begin(), all.end());
+  return {*least, *most};
+}
+
 }  // namespace
 
-std::string scene_text(const Session& session, const std::string& name) {
+std::string scene_text(const Session& session, const std::string& name, std::uint64_t run) {
   const geo::Scene& scene = session.original();
   const geo::Body& body = session.run().body();
   geo::Box3 box;
@@ -60,6 +74,7 @@ std::string scene_text(const Session& session, const std::string& name) {
   for (const geo::SceneBody& b : scene.bodies) bodies.push_back(b.name);
   for (const geo::Blade& b : scene.blades) blades.push_back({{"name", b.name}, {"points", flat(b.at(0))}});
   Json text{{"name", name},
+            {"run", run},
             {"up", sim::up_axis(scene.gravity) == 'Y' ? "y" : "z"},
             {"gravity", point(scene.gravity)},
             {"bodies", bodies},
@@ -67,7 +82,7 @@ std::string scene_text(const Session& session, const std::string& name) {
             {"box", {point(box.lo - geo::Vec3::Constant(coarsest)), point(box.hi + geo::Vec3::Constant(coarsest))}},
             {"rate", scene.frame_rate},
             {"young", young},
-            {"friction", scene.friction},
+            {"friction", frictions_of(scene).second},
             {"damping", scene.material.damping},
             {"blades", blades},
             {"obstacles", obstacles_of(scene)},
@@ -83,6 +98,9 @@ std::string statistics_text(const Session& session, const Pace& pace) {
   Json force = Json::array(), edges = Json::array(), pins = Json::array();
   for (const auto& [edge, newtons] : session.edges()) edges.push_back(flat(edge)), force.push_back(six(newtons));
   for (const geo::Vec3& p : session.pins()) pins.push_back(point(p));
+  Json holds = Json::array();
+  for (const Session::Hold& h : session.holds())
+    holds.push_back({{"id", h.number}, {"at", point(h.at)}, {"to", point(h.to)}});
   double pulled = 0;
   for (const geo::Vec3& f : session.stats().pull_force) pulled += f.norm();
   Json text{{"fps", six(pace.fps)},
@@ -98,14 +116,18 @@ std::string statistics_text(const Session& session, const Pace& pace) {
             {"cut", session.has_cut()},
             {"paused", pace.paused},
             {"undo", session.strokes()},
+            {"redo", session.undone()},
+            {"waiting", session.waiting()},
+            {"holds", holds},
             {"message", pace.message},
             {"stroke", session.last_stroke()},
             {"pins", pins},
             {"edges", edges},
             {"set",
              {{"young", now.material.young},
-              {"gravity", point(now.gravity)},
-              {"friction", now.friction},
+              {"gravity", point(session.gravity())},
+              {"friction", frictions_of(now).second},
+              {"friction_least", frictions_of(now).first},
               {"damping", now.material.damping}}}};
   const auto moves = [](const geo::SceneObstacle& o) { return !o.motion.keys.empty(); };
   if (std::any_of(now.obstacles.begin(), now.obstacles.end(), moves)) {

@@ -1,6 +1,7 @@
 // A scene and the statistics of a frame, as JSON for pages.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "live/session.h"
@@ -17,8 +18,8 @@ struct Pace {
   std::string message;  ///< of the last seconds; may be empty
 };
 
-/// The JSON of STATE.
-std::string scene_text(const Session& session, const std::string& name);
+/// The JSON of STATE. `run`: a number that changes where another model is opened.
+std::string scene_text(const Session& session, const std::string& name, std::uint64_t run = 1);
 /// The statistics of FRAME, without the last brace.
 std::string statistics_text(const Session& session, const Pace& pace);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -40,6 +41,8 @@ namespace {
 constexpr int most_connections = 64, most_messages = 240;  // at a time; per second and page
 constexpr std::size_t most_notices = 16;                   // that wait for a page
 constexpr auto request_time = std::chrono::seconds(10);
+constexpr auto farewell_time = std::chrono::milliseconds(500);  // for pages to hear of the end
+constexpr std::uint64_t largest_model = 256 << 20;              // bytes of a file that a page opens
 
 // Whether two texts are equal, in a time that depends on their lengths only.
 bool same_secret(std::string_view a, std::string_view b) {
@@ -71,6 +74,18 @@ std::string plain_name(std::string name) {
   return name.empty() ? "body" : name.substr(0, 80);
 }
 
+// Text of an address, whose %XX are bytes.
+std::string unescaped(std::string_view text) {
+  const auto digit = [](char c) { return std::string_view("0123456789abcdef").find(char(std::tolower(c))); };
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_escape = text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) < 16 && digit(text[i + 2]) < 16;
+    result += is_escape ? static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2])) : text[i];
+    i += is_escape ? 2 : 0;
+  }
+  return result;
+}
+
 }  // namespace
 
 struct Server::Impl {
@@ -79,8 +94,12 @@ struct Server::Impl {
   void accept();
   void accept_later();
   void close();
+  void end_when_alone();
   bool right_host(std::string_view host, const tcp::socket& socket) const;
   void deliver();
+  // Continues the visit that waits by this number.
+  template <class Work>
+  void pass_on(std::uint64_t number, Work work);
 
   ServerOptions options;
   Inbox& inbox;
@@ -90,6 +109,7 @@ struct Server::Impl {
   std::map<ClientId, std::weak_ptr<Link>> links;
   ClientId last_id = 0;
   int connections = 0;
+  bool ends = false;
   std::shared_ptr<const Snapshot> latest;
   std::atomic<int> nodes_wanted{0}, stress_wanted{0};
   std::atomic<std::uint64_t> graphs_wanted{0};
@@ -114,6 +134,7 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     hub_.links.erase(id_);
     if (joined_) hub_.inbox.put({id_, Leave{}});
     --hub_.connections;
+    if (hub_.ends) hub_.end_when_alone();
   }
 
   void start(const HttpRequest& request) {
@@ -150,8 +171,12 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     } else if (s->number != sent_) {
       const auto taken = s->taken.find(id_);
       const Content content{++sequence_, nodes_, stress_, taken == s->taken.end() ? 0 : taken->second};
-      message_ = known_ ? encode_frame(*s, *known_, content) : encode_state(*s, content);
-      known_ = s->topology, sent_ = s->number, awaited_ = sequence_;
+      const bool knows = known_ && scene_ == s->scene;  // another scene where another model was opened
+      message_ = knows ? encode_frame(*s, *known_, content) : encode_state(*s, content);
+      known_ = s->topology;
+      scene_ = s->scene;
+      sent_ = s->number;
+      awaited_ = sequence_;
     } else {
       return;
     }
@@ -162,10 +187,15 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
       if (!error) self->pump();
     });
   }
+  // Says goodbye, and closes the connection when the page has answered.
   void close() {
+    if (!joined_) return;
     joined_ = false;
-    error_code ignored;
-    beast::get_lowest_layer(ws_).socket().shutdown(tcp::socket::shutdown_both, ignored);
+    ws_.async_close({websocket::close_code::going_away, "kerf-live has ended"},
+                    [self = shared_from_this()](error_code) {
+                      error_code ignored;
+                      beast::get_lowest_layer(self->ws_).socket().close(ignored);
+                    });
   }
 
  private:
@@ -242,6 +272,7 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
   std::uint32_t sequence_ = 0;
   std::optional<std::uint32_t> awaited_;  // number of the message that is not confirmed
   std::shared_ptr<const Topology> known_;
+  std::shared_ptr<const std::string> scene_;
   std::uint64_t sent_ = 0;
   std::optional<std::uint64_t> graph_asked_;  // number of the request that is not answered
   std::chrono::steady_clock::time_point second_;
@@ -257,9 +288,10 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
   }
   void start() {
     parser_.header_limit(8192);
-    parser_.body_limit(1024);
+    parser_.body_limit(largest_model);
     socket_.expires_after(request_time);
-    http::async_read(socket_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
+    http::async_read_header(socket_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error == http::error::body_limit) return self->refuse_size();
       if (!error) self->answer();
     });
   }
@@ -274,6 +306,7 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
     if (target.empty() || slash == target.npos || !same_secret(target.substr(1, slash - 1), hub_.options.token))
       return send(http::status::not_found, "not here; use the address that kerf-live has printed");
     const std::string_view rest = target.substr(slash);
+    if (request.method() == http::verb::post && rest.starts_with("/open?name=")) return receive(host);
     if (request.method() != http::verb::get) return send(http::status::method_not_allowed, "GET only");
     if (rest == "/live") return upgrade(host);
     if (rest == "/") return send(http::status::ok, hub_.options.page, "text/html; charset=utf-8");
@@ -291,27 +324,59 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
     socket_.socket().set_option(tcp::no_delay(true), ignored);
     std::make_shared<Link>(hub_, std::move(socket_))->start(request);
   }
-  void save(const std::string& format) {
-    if (format != "kerf" && format != "ply" && format != "glb" && format != "toml")
-      return send(http::status::not_found, "as=kerf, ply, glb or toml");
-    socket_.expires_never();
-    const auto number = ++hub_.last_file;
-    hub_.waiting[number] = shared_from_this();
-    // The simulation thread drops the answer, perhaps after the server has gone: it owns no visit.
-    Save save{format, [hub = &hub_, number, format](std::string bytes, std::string error) {
-                net::post(hub->io, [=, bytes = std::move(bytes), error = std::move(error)]() mutable {
-                  const auto visit = hub->waiting.extract(number);
-                  if (visit) visit.mapped()->send_file(format, std::move(bytes), error);
+  // The body of a request is read only where it is a model from the page itself.
+  void receive(std::string_view host) {
+    if (view(parser_.get()[http::field::origin]) != "http://" + std::string(host))
+      return send(http::status::forbidden, "wrong origin");
+    socket_.expires_after(request_time * 6);
+    http::async_read(socket_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error == http::error::body_limit) return self->refuse_size();
+      if (!error) self->open();
+    });
+  }
+  void refuse_size() {
+    send(http::status::payload_too_large, "the file has more than " + std::to_string(largest_model >> 20) + " MB");
+  }
+  void open() {
+    const std::string target(view(parser_.get().target()));
+    const std::string name = unescaped(target.substr(target.find("name=") + 5));
+    const auto number = wait();
+    Open open{name, std::move(parser_.get().body()), [hub = &hub_, number](Answer answer) {
+                hub->pass_on(number, [answer = std::move(answer)](Visit& visit) {
+                  if (answer.error.empty()) return visit.send(http::status::ok, "opened");
+                  visit.send(http::status::unprocessable_entity, answer.error);
                 });
               }};
-    if (hub_.inbox.put({0, std::move(save)})) return;
+    give(number, std::move(open));
+  }
+  // Waits for an answer of the simulation, by this number. The simulation thread drops its answer,
+  // perhaps after the server has gone: it owns no visit.
+  std::uint64_t wait() {
+    socket_.expires_never();
+    hub_.waiting[++hub_.last_file] = shared_from_this();
+    return hub_.last_file;
+  }
+  template <class Order>
+  void give(std::uint64_t number, Order order) {
+    if (hub_.inbox.put({0, std::move(order)})) return;
     hub_.waiting.erase(number);
     send(http::status::service_unavailable, "the simulation is busy");
   }
-  void send_file(const std::string& format, std::string bytes, const std::string& error) {
-    if (!error.empty()) return send(http::status::internal_server_error, error);
-    file_ = plain_name(hub_.options.name) + "." + format;
-    send(http::status::ok, std::move(bytes), "application/octet-stream");
+  void save(const std::string& format) {
+    if (format != "kerf" && format != "ply" && format != "glb" && format != "toml")
+      return send(http::status::not_found, "as=kerf, ply, glb or toml");
+    const auto number = wait();
+    Save save{format, [hub = &hub_, number, format](Answer answer) {
+                hub->pass_on(number, [format, answer = std::move(answer)](Visit& visit) mutable {
+                  visit.send_file(format, std::move(answer));
+                });
+              }};
+    give(number, std::move(save));
+  }
+  void send_file(const std::string& format, Answer answer) {
+    if (!answer.error.empty()) return send(http::status::internal_server_error, answer.error);
+    file_ = plain_name(answer.name) + "." + format;
+    send(http::status::ok, std::move(answer.bytes), "application/octet-stream");
   }
   void send(http::status status, std::string body, const std::string& type = "text/plain; charset=utf-8") {
     response_ = HttpResponse(status, 11);
@@ -342,6 +407,15 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
   std::string file_;
   bool upgraded_ = false;
 };
+
+// Called on any thread, while the server lives.
+template <class Work>
+void Server::Impl::pass_on(std::uint64_t number, Work work) {
+  net::post(io, [this, number, work = std::move(work)]() mutable {
+    const auto visit = waiting.extract(number);
+    if (visit) work(*visit.mapped());
+  });
+}
 
 void Server::Impl::listen() {
   const std::string place = options.address + ":" + std::to_string(options.port);
@@ -403,7 +477,16 @@ void Server::Impl::close() {
   for (const auto& [id, link] : links)
     if (auto alive = link.lock()) all.push_back(std::move(alive));
   for (const auto& link : all) link->close();
-  io.stop();
+  all.clear();
+  retry.expires_after(farewell_time);
+  retry.async_wait([this](error_code) { io.stop(); });
+  end_when_alone();
+}
+
+// Without links there is no page to wait for.
+void Server::Impl::end_when_alone() {
+  ends = true;
+  if (links.empty()) io.stop();
 }
 
 Server::Server(const ServerOptions& options, Inbox& inbox) : impl_(std::make_unique<Impl>(options, inbox)) {

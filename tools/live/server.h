@@ -15,10 +15,9 @@ struct ServerOptions {
   int port = 0;                       ///< 0: a free one
   std::string token;                  ///< first part of every path
   std::string page;                   ///< HTML
-  std::string name = "body";          ///< of saved files
 };
 
-/// Serves until it is destroyed, which closes all connections.
+/// Serves until it is destroyed, which tells all pages that it ends, and closes all connections.
 class Server {
  public:
   /// Listens, and starts the thread. Requests go to `inbox`, which must outlive the server. Throws

@@ -28,6 +28,11 @@ void Slots::clear() {
   vertex_slots_ = 0;
 }
 
+std::optional<std::uint32_t> Slots::slot(geo::SurfaceVertexId vertex) const {
+  if (vertex.index() >= vertex_slot_.size() || vertex_slot_[vertex.index()] == none) return {};
+  return vertex_slot_[vertex.index()];
+}
+
 geo::Side Slots::side(std::uint32_t slot) const {
   if (slot >= side_of_slot_.size() || side_of_slot_[slot] == none) return {};
   return {geo::FaceId(side_of_slot_[slot] / 2), static_cast<int>(side_of_slot_[slot] % 2)};

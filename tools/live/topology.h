@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <kerf/complex.h>
@@ -37,6 +38,8 @@ class Slots {
   std::shared_ptr<const Topology> topology() const { return topology_; }
   /// Per living surface vertex, in ascending order: its slot.
   const std::vector<std::uint32_t>& slot_of_living() const { return living_; }
+  /// The slot of a surface vertex; none where it does not live, or has none yet.
+  std::optional<std::uint32_t> slot(geo::SurfaceVertexId vertex) const;
   /// The side of a face in a slot; invalid where the slot is empty or does not exist.
   geo::Side side(std::uint32_t slot) const;
 

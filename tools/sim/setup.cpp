@@ -69,7 +69,7 @@ void warn_of_large_models(const Setup& setup, const tool::Tool& t) {
   const bool unscaled = std::all_of(setup.scene.bodies.begin(), setup.scene.bodies.end(),
                                     [](const geo::SceneBody& b) { return b.scale == 1; });
   if (across >= 100 && unscaled)
-    t.say("kerf-sim: the bodies are " + tool::rounded(across) +
+    t.say(t.name() + ": the bodies are " + tool::rounded(across) +
           " m across, as units are metres; give them scale = 0.001 if they are in mm");
 }
 
@@ -87,7 +87,7 @@ void warn_of_coarse_models(const Setup& setup, const geo::Body& body, const tool
     if (longest <= 4 * coarsest) continue;
     char share[16];
     std::snprintf(share, sizeof share, "%.1g", coarsest / geo::bounding_box(model).diagonal());
-    t.say("kerf-sim: " + fs::path(setup.scene.bodies[b].mesh).filename().string() + " has edges of up to " +
+    t.say(t.name() + ": " + fs::path(setup.scene.bodies[b].mesh).filename().string() + " has edges of up to " +
           tool::rounded(longest) + ", nodes are at most " + tool::rounded(coarsest) +
           " apart; a surface bends and touches at its vertices: kerf-repair --edge " + share + " gives it more");
   }
@@ -117,7 +117,7 @@ void warn_of_empty_grips(const Setup& setup, const geo::Body& body, const tool::
     if (std::none_of(positions.begin(), positions.end(), [&](const geo::Vec3& p) {
           return (p.array() >= g.lo.array() && p.array() <= g.hi.array()).all();
         }))
-      t.say("kerf-sim: no node is in the box from (" + in_words(g.lo) + ") to (" + in_words(g.hi) +
+      t.say(t.name() + ": no node is in the box from (" + in_words(g.lo) + ") to (" + in_words(g.hi) +
             "), which is to hold some; bodies are where their scale, rotation and position put them");
 }
 
@@ -130,9 +130,9 @@ void warn_of_missed_blades(const Setup& setup, double time, const tool::Tool& t)
     for (const auto& key : blade.motion.keys)
       for (const geo::Vec3& p : blade.at(key.time)) box.add(p);
   }
-  t.say("kerf-sim: no blade met the material in " + tool::rounded(time) + " s; by their keys, blades are there from " +
-        tool::rounded(from) + " to " + tool::rounded(to) + " s, within (" + tool::rounded(box.lo) + ") to (" +
-        tool::rounded(box.hi) + ")");
+  t.say(t.name() + ": no blade met the material in " + tool::rounded(time) +
+        " s; by their keys, blades are there from " + tool::rounded(from) + " to " + tool::rounded(to) +
+        " s, within (" + tool::rounded(box.lo) + ") to (" + tool::rounded(box.hi) + ")");
 }
 
 }  // namespace sim

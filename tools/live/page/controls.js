@@ -21,7 +21,7 @@ function set(key, value) {
   changed();
 }
 const does = {
-  knife: "Drag across the body: the cut follows.", scalpel: "Drag along the surface: an edge cuts in.", grab: "Drag a place of the body.",
+  knife: "Drag across the body: the cut follows.", scalpel: "Drag along the surface: an edge cuts in.", grab: "Drag a place of the body. With Ctrl, or a second finger, it stays held.",
   pin: "Click a place to hold it; click again to let go.", orbit: "Drag to turn, two fingers or the wheel to zoom.",
 };
 function showTool() {
@@ -56,6 +56,9 @@ function showValues(said) {
     const value = name === "gravity" ? (g > 0 ? length(said.gravity) / g : 0) : said[name];
     $(name).value = String(toSlider(name, value)), $(name + "-value").textContent = units[name](value);
   }
+  // Ground, obstacles and bodies may each have their own, until the slider gives them one.
+  const least = said.friction_least ?? said.friction;
+  if (performance.now() - touched.friction >= 600 && least !== said.friction) $("friction-value").textContent = [least, said.friction].map((f) => Number(f.toFixed(2))).join("–");
 }
 function slide(name) {
   const value = fromSlider(name, Number($(name).value));
@@ -65,18 +68,25 @@ function slide(name) {
 }
 
 const orders = {
-  undo: () => send({ undo: true }), reset: () => send({ reset: true }), pause: () => send({ pause: !live.stats.paused }), step: () => send({ step: true }),
+  undo: () => send({ undo: true }), redo: () => send({ redo: true }), reset: () => send({ reset: true }), pause: () => send({ pause: !live.stats.paused }), step: () => send({ step: true }),
   help: () => $("help").showModal(), home: resetView, menu: toggleMenu, save: () => savePicture(),
 };
 function resetView() {
   Object.assign(view, home), view.target.set(0, 0, 0);
   fitEye();
+  if (live.time > 0 && live.position.length > 0) seeBody();
   redraw();
 }
-// On a narrow screen the eye is farther away, and the body above the tools.
+// On a narrow screen the eye is farther away.
 function fitEye() {
   const narrow = Math.min(1, $("stage").clientWidth / Math.max(1, $("stage").clientHeight) / 0.78);
   view.distance = home.distance * 1.22 / narrow;
+}
+// Looks at the body where it is now, all of its pieces.
+function seeBody() {
+  const { middle, radius } = bodySphere();
+  view.target.copy(middle);
+  view.distance *= Math.max(1, radius / 1.1);
 }
 function toggleMenu() {
   const wide = document.body.classList.toggle("wide");
@@ -92,10 +102,10 @@ function savePicture() {
 
 const keys = {
   k: () => set("tool", "knife"), l: () => set("tool", "scalpel"), g: () => set("tool", "grab"), p: () => set("tool", "pin"), o: () => set("tool", "orbit"),
-  u: orders.undo, r: orders.reset, " ": orders.pause, ".": orders.step, h: resetView, m: toggleMenu, "?": orders.help,
+  u: orders.undo, U: orders.redo, r: orders.reset, " ": orders.pause, ".": orders.step, h: resetView, m: toggleMenu, "?": orders.help,
   n: () => set("nodes", !state.nodes), e: () => set("edges", !state.edges), t: () => set("stress", !state.stress), w: () => set("wire", !state.wire),
   c: () => set("walls", !state.walls), s: () => set("skin", state.skin === 1 ? 0.2 : state.skin > 0 ? 0 : 1), d: () => set("shadows", !state.shadows),
-  "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1 / 0.88), Escape: () => endStroke(),
+  "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1 / 0.88), Escape: () => (hand.stroke ? endStroke() : cursor.hide()),
   "[": () => set("depth", Math.max(0.05, Number((state.depth - 0.05).toFixed(2)))), "]": () => set("depth", Math.min(1, Number((state.depth + 0.05).toFixed(2)))),
 };
 const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
@@ -104,11 +114,16 @@ function listenToKeys() {
   document.addEventListener("keydown", (e) => {
     if ($("help").open) return;
     if ((e.ctrlKey || e.metaKey) && e.key === "z") return e.preventDefault(), orders.undo();
+    if ((e.ctrlKey || e.metaKey) && (e.key === "Z" || e.key === "y")) return e.preventDefault(), orders.redo();
+    if (e.key === "Enter" && !e.target.matches("button, input, a, select")) return e.preventDefault(), cursor.press(e.ctrlKey || e.metaKey);
     if (e.ctrlKey || e.metaKey || e.altKey) return;
-    const sliding = e.target.matches("input[type=range], select"), pressing = e.key === " " && e.target.matches("button, input[type=checkbox], a, summary");
+    const sliding = e.target.matches("input[type=range], select"), pressing = e.key === " " && e.target.matches("button, input[type=checkbox]");
     if (pressing) return;
     const arrow = arrows[e.key];
-    if (arrow && !sliding) {
+    if (arrow && !sliding && cursor.shown) {
+      cursor.move(-arrow[0], -arrow[1], e.shiftKey);
+      e.preventDefault();
+    } else if (arrow && !sliding) {
       if (e.shiftKey) pan(-24 * arrow[0], -24 * arrow[1]);
       else turn(0.08 * arrow[0], 0.08 * arrow[1]);
       e.preventDefault();
@@ -118,7 +133,7 @@ function listenToKeys() {
 function listenToControls() {
   // A control that was clicked does not keep the focus: the space bar pauses. The keyboard's own focus stays.
   document.addEventListener("click", (e) => {
-    if (e.detail > 0 && document.activeElement.matches("button, summary, input[type=checkbox]")) document.activeElement.blur();
+    if (e.detail > 0 && document.activeElement.matches("button, a, input[type=checkbox]")) document.activeElement.blur();
   });
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
@@ -148,16 +163,16 @@ function dress() {
   $("gravity").disabled = g === 0;
   showValues({ young: live.told.youngs?.[0] ?? live.told.youngs, friction: live.told.friction, gravity: live.told.gravity, damping: live.told.damping });
   world.begin();
+  resetView();
   $("wait").hidden = true;
 }
 
 function begin() {
   followAddress();
   if (window.matchMedia("(max-width: 700px)").matches) document.body.classList.add("wide"), $("menu").setAttribute("aria-expanded", "false");
-  hand.ghost = new Ghost();
   plots.force = new Plot("force-plot", "#b5432a", newtons), plots.rate = new Plot("rate-plot", "#2464b4", String);
-  layers.push(surface, world, inside, { update() {}, beforeDraw: () => hand.ghost.beforeDraw() }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
-  listenToControls(), listenToKeys(), listenToPointer();
+  layers.push(surface, world, inside, { update() {}, beforeDraw: drawGhosts }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
+  listenToControls(), listenToKeys(), listenToPointer(), listenToFiles();
   surface.dress();
   showTool(), showDepth();
   $("plots").hidden = !state.plotted;

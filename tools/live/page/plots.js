@@ -72,7 +72,7 @@ function showFigures() {
   $("time").textContent = live.time.toFixed(2) + " s", $("pieces").textContent = stats.pieces ?? "–";
   $("lag").textContent = wire.latency ? Math.round(wire.latency) + " ms" : "–";
   $("sizes").textContent = `${surface.corners.slots.toLocaleString("en")} triangles, ${(live.nodes ?? 0).toLocaleString("en")} nodes`;
-  $("undo").disabled = !(stats.undo > 0);
+  $("undo").disabled = !(stats.undo > 0), $("redo").disabled = !(stats.redo > 0);
   $("pause").setAttribute("aria-pressed", String(!!stats.paused));
   $("pause").querySelector("span").textContent = stats.paused ? "Go on" : "Pause";
   const slow = !stats.paused && stats.fps > 0 && stats.sim_rate < 0.95;

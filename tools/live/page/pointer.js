@@ -1,7 +1,20 @@
 // Mouse, touch and pen: one finger or the left button has the tool, two fingers or the right button have the eye.
 const pointers = new Map();
 const spent = new Set();  // pointers that have drawn a stroke: after Escape, what is left of the drag does nothing
-const slop = 5;  // pixels that a pointer moves before a knife cuts: a click does not
+const slop = 5;     // pixels that a pointer moves before a knife cuts: a click does not
+const stride = 3;   // pixels between two places of its path
+
+// Where the pointer has been since the last event: the browser collects moves until it draws.
+function placesOf(e) {
+  const box = $("canvas").getBoundingClientRect(), places = [];
+  for (const at of e.getCoalescedEvents?.() ?? []) {
+    const place = [at.clientX - box.x, at.clientY - box.y], [x, y] = places[places.length - 1] ?? [Infinity, 0];
+    if (Math.hypot(place[0] - x, place[1] - y) >= stride) places.push(place);
+  }
+  const [x, y] = places[places.length - 1] ?? [NaN, NaN];
+  if (x !== e.offsetX || y !== e.offsetY) places.push([e.offsetX, e.offsetY]);
+  return places;
+}
 
 function listenToPointer() {
   const canvas = $("canvas");
@@ -11,11 +24,17 @@ function listenToPointer() {
     canvas.setPointerCapture(e.pointerId);
     pointers.set(e.pointerId, e);
     spread = 0;
+    cursor.hide();
+    if (pointers.size > 1 && hand.stroke?.kind === "grab") return spent.add(e.pointerId), keepHeld(hand.stroke);
     if (pointers.size > 1) return pending = null, endStroke();  // a second finger: the eye moves
-    const tool = e.button === 0 && !e.shiftKey && !e.altKey && !e.ctrlKey;
+    const grabs = state.tool === "grab", stays = grabs && (e.ctrlKey || e.metaKey);
+    const tool = e.button === 0 && !e.shiftKey && !e.altKey && (stays || !e.ctrlKey);
     if (!tool || state.tool === "orbit") return;
-    if (state.tool === "grab") beginStroke(e.offsetX, e.offsetY, e.pointerId) && spent.add(e.pointerId);
-    else pending = { x: e.offsetX, y: e.offsetY, id: e.pointerId };
+    if (grabs) {
+      if (!beginStroke(e.offsetX, e.offsetY, e.pointerId)) return;
+      spent.add(e.pointerId);
+      if (stays) keepHeld(hand.stroke);
+    } else pending = { x: e.offsetX, y: e.offsetY, id: e.pointerId };
   });
   canvas.addEventListener("pointermove", (e) => {
     const before = pointers.get(e.pointerId);
@@ -23,7 +42,7 @@ function listenToPointer() {
     const dx = e.clientX - before.clientX, dy = e.clientY - before.clientY;
     if (hand.stroke) {
       pointers.set(e.pointerId, e);
-      if (hand.stroke.pointer === e.pointerId) moveStroke(e.offsetX, e.offsetY);
+      if (hand.stroke.pointer === e.pointerId) for (const place of placesOf(e)) moveStroke(...place);
       return;
     }
     if (pending) {
@@ -31,10 +50,14 @@ function listenToPointer() {
       const { x, y, id } = pending;
       pending = null;
       pointers.set(e.pointerId, e);
-      if (beginStroke(x, y, id)) return spent.add(id), moveStroke(e.offsetX, e.offsetY);
+      if (beginStroke(x, y, id)) {
+        spent.add(id);
+        for (const place of placesOf(e)) moveStroke(...place);
+        return;
+      }
     }
     pointers.set(e.pointerId, e);
-    if (pointers.size > 1 || !spent.has(e.pointerId)) moveEye(e, dx, dy);
+    if (!spent.has(e.pointerId)) moveEye(e, dx, dy);
   });
   // Two fingers turn, zoom and move at once; with the shift key or the middle button the eye moves sideways.
   const moveEye = (e, dx, dy) => {
@@ -50,6 +73,7 @@ function listenToPointer() {
     pointers.delete(e.pointerId), spent.delete(e.pointerId);
     if (hand.stroke && hand.stroke.pointer === e.pointerId) {
       if (e.type === "pointerup") moveStroke(e.offsetX, e.offsetY);
+      if (e.ctrlKey || e.metaKey) keepHeld(hand.stroke);
       endStroke();
     } else if (pending && e.type === "pointerup" && state.tool === "pin") pinAt(e.offsetX, e.offsetY);
     pending = null;

@@ -19,7 +19,7 @@ const toWorld = (v) => v.toArray().map((x, k) => about.middle[k] + about.unit * 
 const upward = () => new THREE.Vector3(0, about.y_up ? 1 : 0, about.y_up ? 0 : 1);
 
 function stateArrived(arrived) {
-  const told = arrived.about, first = live.told === null;
+  const told = arrived.about, first = live.told === null || live.told.run !== told.run;
   live.told = told, live.revision = arrived.revision, live.vertices = arrived.vertices, live.pairs = null;
   askForGraph();
   if (first) {

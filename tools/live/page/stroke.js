@@ -1,6 +1,6 @@
 // Tools of the hand: each turns a drag of the pointer into messages. Distances here are in shown coordinates, messages in world ones.
 let strokes = 0;
-const hand = { stroke: null, trail: [], ghost: null };
+const hand = { stroke: null, trail: [], ghosts: [] };
 
 // The ray from the eye through a place on the canvas.
 function rayAt(x, y) {
@@ -41,6 +41,8 @@ class Knife {
     this.edge = [near, far];
     return { eye: toWorld(origin), ray: ray.toArray(), depth: this.depth * about.unit, from: from * about.unit };
   }
+  // A pose on the way between two messages.
+  row({ ray, from }) { return [...ray, from]; }
 }
 // The scalpel: an edge that follows the pointer on the surface, across it. A stroke that is on the skin stays on it: over an open
 // cut it goes on in the plane of the skin that it left. A stroke that begins on a wall of a cut follows the wall.
@@ -55,6 +57,7 @@ class Scalpel {
     this.edge = [at.point.clone().addScaledVector(at.normal, 0.04), at.point.clone().addScaledVector(at.normal, -depth)];
     return { point: toWorld(at.point), normal: at.normal.toArray(), depth: depth * about.unit };
   }
+  row({ point, normal }) { return [...point, ...normal]; }
   // Where a ray meets the plane of the skin that was left, in front of the wall that it meets; null: nowhere.
   bridge(origin, ray, wall) {
     const { point, normal } = this.left, run = normal.dot(ray), distance = point.clone().sub(origin).dot(normal) / run;
@@ -62,27 +65,48 @@ class Scalpel {
     return { point: ray.clone().multiplyScalar(distance).add(origin), normal };
   }
 }
-// A spring on what is under the pointer; its other end moves in the plane through that point that faces the eye.
+// A spring on what is under the pointer, or one that has stayed; its other end moves in the plane through that point that faces the eye.
 class Grab {
   begin(x, y) {
-    const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);
-    if (!hit) return null;
-    this.at = hit, this.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 2), hit.point);
+    const { origin, ray } = rayAt(x, y);
+    this.hold = holdAt(x, y);
+    this.at = this.hold ? null : surface.hit(origin, ray);
+    if (!this.hold && !this.at) return null;
+    const through = this.hold ? toShown(this.hold.to) : this.at.point;
+    this.plane = new THREE.Plane().setFromNormalAndCoplanarPoint(new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 2), through);
+    this.from = [x, y], this.moved = false;
     return this.message(x, y);
   }
   message(x, y) {
     const { origin, ray } = rayAt(x, y), run = this.plane.normal.dot(ray);
     const along = -this.plane.distanceToPoint(origin) / run, to = ray.clone().multiplyScalar(along).add(origin);
+    this.moved ||= Math.hypot(x - this.from[0], y - this.from[1]) >= slop;
     this.edge = [this.held(), to];
-    return { face: this.at.slot, bary: this.at.bary, to: toWorld(to) };
+    return { ...(this.hold ? { held: this.hold.id } : { face: this.at.slot, bary: this.at.bary }), to: toWorld(to) };
   }
   // Where the held point of the surface is now.
   held() {
+    if (this.hold) return toShown(((live.stats.holds ?? []).find((h) => h.id === this.hold.id) ?? this.hold).at);
     const c = surface.corners, p = new THREE.Vector3(), sum = new THREE.Vector3();
     if (!c.has(this.at.slot)) return this.last ?? this.at.point;
     this.at.bary.forEach((w, k) => sum.addScaledVector(p.fromArray(live.position, 3 * c.vertex[3 * this.at.slot + k]), w));
     return this.last = sum;
   }
+  // The last message of a grab. One that has stayed goes on to, unless it was clicked.
+  get ending() { return this.stays || (this.hold && this.moved) ? "hold" : "end"; }
+}
+// A spring that stays, whose end is at a place of the screen.
+function holdAt(x, y) {
+  const canvas = $("canvas"), near = window.matchMedia("(pointer: coarse)").matches ? 26 : 14;
+  return (live.stats.holds ?? []).find(({ to }) => {
+    const p = toShown(to).project(camera);
+    return Math.hypot((p.x + 1) / 2 * canvas.clientWidth - x, (1 - p.y) / 2 * canvas.clientHeight - y) < near;
+  });
+}
+function keepHeld(stroke) {
+  if (stroke.kind !== "grab" || stroke.tool.stays) return;
+  stroke.tool.stays = true;
+  notice({ notice: "This place stays held. A click on the end of its line lets go." });
 }
 const handTools = { knife: Knife, scalpel: Scalpel, grab: Grab };
 
@@ -91,37 +115,49 @@ function beginStroke(x, y, pointer) {
   if (!make || !wire.open || live.position.length === 0) return false;
   const tool = new make(), message = tool.begin(x, y);
   if (!message) return false;
-  hand.stroke = { id: ++strokes, kind: state.tool, tool, sphere: tool.sphere ?? bodySphere(), pointer, last: message, sentAt: performance.now() };
+  const id = ++strokes, ghost = new Ghost(id, tool.edge, state.tool);
+  hand.stroke = { id, kind: state.tool, tool, ghost, sphere: tool.sphere ?? bodySphere(), pointer, last: message, pending: [], sentAt: performance.now() };
+  hand.ghosts.push(ghost);
   hand.trail = [[x, y, performance.now()]];
-  hand.ghost.begin(tool.edge, state.tool);
   sendInput(state.tool, { id: strokes, phase: "begin", ...message });
   redraw();
   return true;
 }
-const apart = 6;  // milliseconds between messages: below the 240 a second that are taken
+const apart = 6;       // milliseconds between messages: below the 240 a second that are taken
+const mostPoses = 24;  // in a message, which has at most 4096 bytes
 function moveStroke(x, y) {
   const s = hand.stroke, message = s.tool.message(x, y);
   hand.trail.push([x, y, performance.now()]);
   redraw();
   if (!message) return;
   s.last = message;
-  hand.ghost.add(s.tool.edge);
+  s.pending.push(message);
+  s.ghost.add(s.tool.edge);
   clearTimeout(s.later);
   const wait = s.sentAt + apart - performance.now();
   if (wait <= 0) passOn(s);
   else s.later = setTimeout(() => hand.stroke === s && passOn(s), wait);
 }
+// Sends the poses since the last message: the path between two frames is kept.
 function passOn(s) {
+  clearTimeout(s.later);
   s.sentAt = performance.now();
-  sendInput(s.kind, { id: s.id, phase: "move", ...s.last });
+  while (s.pending.length > 0) {
+    const first = s.pending[0];
+    let n = 1;
+    while (n < Math.min(mostPoses, s.pending.length) && String(s.pending[n].eye) === String(first.eye)) n++;
+    const poses = s.pending.splice(0, n), last = poses.pop();
+    const way = s.tool.row ? poses.map((pose) => s.tool.row(pose).map((x) => Number(x.toPrecision(8)))) : [];
+    sendInput(s.kind, { id: s.id, phase: "move", ...last, ...(way.length > 0 ? { way } : {}) });
+  }
 }
 function endStroke() {
   const s = hand.stroke;
   if (!s) return;
+  passOn(s);
   hand.stroke = null;
-  clearTimeout(s.later);
-  sendInput(s.kind, { id: s.id, phase: "end", ...s.last });
-  hand.ghost.end();
+  sendInput(s.kind, { id: s.id, phase: s.tool.ending ?? "end", ...s.last });
+  s.ghost.end();
   redraw();
 }
 function pinAt(x, y) {
@@ -133,9 +169,10 @@ function pinAt(x, y) {
   return true;
 }
 
-// What the edge has swept, as a pale sheet that fades after the stroke; for the grab, a line from the held point.
+// What the edge of a stroke has swept, as a pale sheet that fades after the stroke; for the grab, a line from the held point.
+// A stroke on a paused body is shown until it has cut.
 class Ghost {
-  constructor() {
+  constructor(id, edge, kind) {
     const mesh = (object, order) => {
       object.frustumCulled = false, object.renderOrder = order, object.visible = false;
       scene.add(object);
@@ -143,22 +180,22 @@ class Ghost {
     };
     this.sheet = mesh(new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshBasicMaterial({ color: 0x4d8fe0, transparent: true, opacity: 0.3, side: THREE.DoubleSide, depthWrite: false, depthTest: false })), 8);
     this.rim = mesh(new THREE.LineSegments(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1d4f96, transparent: true, depthTest: false })), 8.1);
-    this.edges = [], this.fading = 0;
-  }
-  begin(edge, kind) {
-    this.kind = kind, this.edges = [edge], this.fading = 0;
+    this.id = id, this.kind = kind, this.edges = [edge], this.fading = 0;
   }
   add(edge) {
     if (this.kind === "grab") this.edges = [edge];
     else if (edge[0].distanceTo(this.edges[this.edges.length - 1][0]) > 1e-4) this.edges.push(edge);
-    if (this.edges.length > 400) this.edges.shift();
+    if (this.edges.length > 2000) this.edges = this.edges.filter((e, i) => i % 2 === 0);
   }
   end() { this.fading = performance.now(); }
+  // Whether the edge is still to cut, once the run goes on.
+  waits() { return this.kind !== "grab" && live.stats.paused && (live.stats.waiting ?? []).includes(this.id); }
+  gone() { return this.fading > 0 && performance.now() - this.fading >= (this.kind === "grab" ? 0 : 2500); }
   beforeDraw() {
-    const age = this.fading ? (performance.now() - this.fading) / 2500 : 0, gone = this.edges.length === 0 || age >= 1;
-    this.sheet.visible = !gone && this.kind !== "grab" && this.edges.length > 1, this.rim.visible = !gone && !(this.kind === "grab" && this.fading);
-    if (gone) return void (this.edges = []);
-    if (hand.stroke?.tool.held) this.edges = [[hand.stroke.tool.held(), this.edges[0][1]]];
+    if (this.fading && this.waits()) this.fading = performance.now();
+    const age = this.fading ? (performance.now() - this.fading) / 2500 : 0;
+    if (hand.stroke?.ghost === this && hand.stroke.tool.held) this.edges = [[hand.stroke.tool.held(), this.edges[0][1]]];
+    this.sheet.visible = this.kind !== "grab" && this.edges.length > 1, this.rim.visible = true;
     const points = this.edges.flatMap(([a, b]) => [...a.toArray(), ...b.toArray()]), n = this.edges.length, faces = [], lines = [0, 1, 2 * n - 2, 2 * n - 1];
     for (let i = 0; i + 1 < n; i++) faces.push(2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2), lines.push(2 * i, 2 * i + 2, 2 * i + 1, 2 * i + 3);
     const put = (mesh, index) => {
@@ -168,8 +205,18 @@ class Ghost {
     };
     put(this.sheet, faces), put(this.rim, lines);
     this.sheet.material.opacity = 0.3 * (1 - age), this.rim.material.opacity = 0.9 * (1 - age);
-    if (this.fading) redraw();
+    if (this.fading && !this.waits()) redraw();
   }
+  remove() {
+    for (const object of [this.sheet, this.rim]) {
+      scene.remove(object);
+      object.geometry.dispose(), object.material.dispose();
+    }
+  }
+}
+function drawGhosts() {
+  for (const ghost of hand.ghosts) ghost.gone() ? ghost.remove() : ghost.beforeDraw();
+  hand.ghosts = hand.ghosts.filter((ghost) => !ghost.gone());
 }
 
 // The knife's plane goes through the eye, which sees it as a line: a small picture shows it from the side while it is dragged.

@@ -19,6 +19,9 @@ function softMaterial() {
       outgoingLight += glow * (0.04 + 0.34 * grazing) * (0.35 + 0.65 * max(0.0, dot(normal, groundPlane.xyz) * 0.5 + 0.5));
       float height = dot(-vViewPosition, groundPlane.xyz) + groundPlane.w;
       outgoingLight *= mix(0.72, 1.0, smoothstep(0.0, 0.42, height + 0.25 * max(0.0, dot(normal, groundPlane.xyz))));
+      // Above a shoulder, brightness approaches 1 and never clips: pale walls keep their shading. Hues stay.
+      float shoulder = 0.75, most = max(outgoingLight.r, max(outgoingLight.g, outgoingLight.b));
+      if (most > shoulder) outgoingLight *= (1.0 - (1.0 - shoulder) * exp((shoulder - most) / (1.0 - shoulder))) / most;
       #include <envmap_fragment>`);
   };
   return material;
@@ -36,7 +39,14 @@ class Surface {
       scene.add(m);
       return m;
     };
+    // Transparent skin is drawn in three passes: what faces away, the depth of what faces the eye, and this itself. So the
+    // order of triangles does not show.
     this.skin = mesh(softMaterial(), 4);
+    this.inner = mesh(this.skin.material.clone(), 3.8);
+    this.inner.material.onBeforeCompile = this.skin.material.onBeforeCompile, this.inner.material.userData = this.skin.material.userData;
+    this.inner.material.side = THREE.BackSide, this.inner.material.transparent = true, this.inner.material.depthWrite = false;
+    this.depth = mesh(new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true }), 3.9);
+    this.inner.castShadow = this.depth.castShadow = false;
     this.walls = mesh(softMaterial(), 3);
     this.walls.material.side = THREE.FrontSide;  // closed sheets stand at one place; each is seen from its own side
     this.walls.material.shadowSide = THREE.DoubleSide;
@@ -46,12 +56,12 @@ class Surface {
       scene.add(l);
       return l;
     };
-    this.wire = lines(0x26323f, 0.4, 5), this.lips = lines(0x7a3212, 0.9, 6);
-    for (const m of [this.skin, this.walls]) m.material.polygonOffset = true, m.material.polygonOffsetFactor = m.material.polygonOffsetUnits = 1;
+    this.wire = lines(0x26323f, 0.4, 5), this.lips = lines(0x7a3212, 0.9, 3.85);  // before the skin, which those behind it are seen through
+    for (const m of [this.skin, this.inner, this.depth, this.walls]) m.material.polygonOffset = true, m.material.polygonOffsetFactor = m.material.polygonOffsetUnits = 1;
   }
   dress() {
     const look = looks[state.look] ?? looks.clay;
-    this.skin.material.color.set(look.skin), this.walls.material.color.set(look.wall), this.lips.material.color.set(look.lip);
+    this.skin.material.color.set(look.skin), this.inner.material.color.set(look.skin), this.walls.material.color.set(look.wall), this.lips.material.color.set(look.lip);
     this.skin.material.userData.glow.set(look.glow), this.walls.material.userData.glow.set(look.inner);
   }
   // A whole surface: the groups of corners wait for the positions of its frame.
@@ -102,9 +112,11 @@ class Surface {
       to.push(c.group[3 * s], c.group[3 * s + 1], c.group[3 * s + 2]);
       if (c.kind[s] !== 0) for (let k = 3 * s; k < 3 * s + 3; k++) if (this.isLip(k)) lips.push(c.vertex[k], c.vertex[cornerAfter(k)]);
     }
-    this.bind(this.skin, skin, true), this.bind(this.walls, walls, true), this.bind(this.lips, lips, false);
+    this.bind(this.skin, skin, true);
+    this.inner.geometry = this.depth.geometry = this.skin.geometry;
+    this.bind(this.walls, walls, true), this.bind(this.lips, lips, false);
     this.wireStale = true;
-    this.fillWire();
+    this.update();
   }
   bind(mesh, index, shaded) {
     mesh.geometry.dispose();
@@ -130,9 +142,9 @@ class Surface {
   }
   update() {
     const m = this.skin.material, through = state.skin < 1;
-    m.opacity = state.skin, m.depthWrite = !through;
-    if (m.transparent !== through) m.transparent = through, m.needsUpdate = true;
-    this.skin.visible = state.skin > 0;
+    m.opacity = this.inner.material.opacity = state.skin;
+    if (m.transparent !== through) m.transparent = through, m.side = through ? THREE.FrontSide : THREE.DoubleSide, m.shadowSide = THREE.DoubleSide, m.needsUpdate = true;
+    this.skin.visible = state.skin > 0, this.inner.visible = this.depth.visible = through && state.skin > 0;
     this.walls.visible = state.walls && !this.walls.empty;
     this.lips.visible = state.walls && state.skin > 0 && !this.lips.empty;
     this.fillWire();

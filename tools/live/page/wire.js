@@ -83,6 +83,7 @@ function inputTaken(input) {
   }
 }
 
+const patience = 10000;  // milliseconds without a connection, after which the page says what may be the reason
 function connect() {
   const address = new URL("live", location.href);
   address.protocol = address.protocol.replace("http", "ws"), address.hash = address.search = "";
@@ -90,7 +91,7 @@ function connect() {
   socket.binaryType = "arraybuffer";
   wire.socket = socket;
   socket.onopen = () => {
-    wire.open = true, wire.wait = 500, wire.sequence = -1;
+    wire.open = true, wire.wait = 500, wire.sequence = -1, wire.lost = undefined;
     sendWants(true), connection("");
   };
   socket.onmessage = (e) => {
@@ -103,9 +104,13 @@ function connect() {
       socket.close();
     }
   };
-  socket.onclose = () => {
+  socket.onclose = (e) => {
     wire.open = false, endStroke();
-    connection((wire.broken ?? "No connection") + " – trying again …");
+    // 1001: the program has said that it ends.
+    if (e.code === 1001) return connection("kerf-live has ended. Start it again, and open the address that it prints.");
+    wire.lost ??= performance.now();
+    const long = performance.now() - wire.lost > patience;
+    connection(wire.broken ?? (long ? "kerf-live does not answer. If it has ended, start it again, and open the address that it prints." : "No connection – trying again …"));
     wire.broken = undefined;
     setTimeout(connect, wire.wait);
     wire.wait = Math.min(wire.wait * 1.6, 5000);

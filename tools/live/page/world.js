@@ -1,14 +1,18 @@
 // The place where the body is: background, light, ground with shadows, obstacles, pins, and edges of blades.
 const groundPlane = { value: new THREE.Vector4(0, 0, 0, 1e3) };  // in the eye's coordinates: a point's height above the ground
 
+// Colours of the background, from above to below, and of the floor, from its middle outwards.
+const tonesOf = {
+  light: { top: "#dfe7f0", middle: "#eef2f6", bottom: "#cfd8e2", inner: 0xfbfcfd, outer: 0xdbe3ec },
+  dark: { top: "#1b222b", middle: "#262f3a", bottom: "#12171d", inner: 0x3c4754, outer: 0x222a34 },
+};
+const darkness = window.matchMedia("(prefers-color-scheme: dark)");
+
 class World {
   constructor() {
-    const canvas = document.createElement("canvas"), paint = canvas.getContext("2d");
-    canvas.width = 2, canvas.height = 256;
-    const fade = paint.createLinearGradient(0, 0, 0, 256);
-    fade.addColorStop(0, "#dfe7f0"), fade.addColorStop(0.55, "#eef2f6"), fade.addColorStop(1, "#cfd8e2");
-    paint.fillStyle = fade, paint.fillRect(0, 0, 2, 256);
-    scene.background = new THREE.CanvasTexture(canvas);
+    this.inner = { value: new THREE.Color() }, this.outer = { value: new THREE.Color() };
+    this.paint();
+    darkness.addEventListener("change", () => (this.paint(), redraw()));
     renderer.shadowMap.enabled = true, renderer.shadowMap.type = THREE.PCFShadowMap;
     sky.intensity = 0.62, lamp.intensity = 0.22;  // the lamp goes with the eye, the sun stays
     this.sun = new THREE.DirectionalLight(0xfff6ea, 0.42);
@@ -18,6 +22,16 @@ class World {
     this.floor = null;
     this.things = new THREE.Group(), this.pins = new Spots(7), this.edges = new THREE.Group();
     scene.add(this.things, this.edges);
+  }
+  // Background and floor, light or dark as the rest of the page.
+  paint() {
+    const tones = tonesOf[darkness.matches ? "dark" : "light"], canvas = document.createElement("canvas"), paint = canvas.getContext("2d");
+    canvas.width = 2, canvas.height = 256;
+    const fade = paint.createLinearGradient(0, 0, 0, 256);
+    fade.addColorStop(0, tones.top), fade.addColorStop(0.55, tones.middle), fade.addColorStop(1, tones.bottom);
+    paint.fillStyle = fade, paint.fillRect(0, 0, 2, 256);
+    scene.background = new THREE.CanvasTexture(canvas);
+    this.inner.value.set(tones.inner), this.outer.value.set(tones.outer);
   }
   // Once the state is known: the ground, and obstacles.
   begin() {
@@ -62,12 +76,12 @@ class World {
   // A disc that fades into the background, lighter in the middle, with rings to tell distances.
   floorMaterial() {
     return new THREE.ShaderMaterial({
-      transparent: true, depthWrite: false, uniforms: {},
+      transparent: true, depthWrite: false, uniforms: { inner: this.inner, outer: this.outer },
       vertexShader: "varying vec2 at; void main() { at = position.xy; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
-      fragmentShader: `varying vec2 at;
+      fragmentShader: `varying vec2 at; uniform vec3 inner, outer;
         void main() {
           float r = length(at), ring = smoothstep(0.012, 0.0, abs(fract(r * 2.0 + 0.5) - 0.5) / 2.0);
-          vec3 tone = mix(vec3(0.985, 0.988, 0.992), vec3(0.86, 0.89, 0.925), smoothstep(0.0, 3.2, r)) - 0.05 * ring;
+          vec3 tone = mix(inner, outer, smoothstep(0.0, 3.2, r)) - 0.05 * ring;
           gl_FragColor = vec4(tone, 0.95 * (1.0 - smoothstep(1.6, 4.6, r)));
         }`,
     });
@@ -78,18 +92,23 @@ class World {
   }
   // With each frame: where pins, edges and obstacles are.
   moved() {
-    const { pins = [], edges = [], obstacles = [] } = live.stats;
-    if (pins.length) this.pins.set(pins.flatMap((p) => toShown(p).toArray()), pins.flatMap(() => [0.16, 0.36, 0.85]), pins.map(() => 0.06));
+    const { pins = [], holds = [], edges = [], obstacles = [] } = live.stats;
+    const spots = [...pins.map((p) => [p, [0.16, 0.36, 0.85], 0.06]), ...holds.flatMap(({ at, to }) => [[at, [0.85, 0.45, 0.1], 0.04], [to, [0.85, 0.45, 0.1], 0.07]])];
+    if (spots.length) this.pins.set(spots.flatMap(([p]) => toShown(p).toArray()), spots.flatMap(([, color]) => color), spots.map(([, , size]) => size));
     else this.pins.hide();
-    for (const line of this.edges.children) line.geometry.dispose();
+    for (const line of this.edges.children) line.geometry.dispose(), line.material.dispose();
     this.edges.remove(...this.edges.children);
+    const add = (points, color) => {
+      const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color }));
+      line.frustumCulled = false, line.renderOrder = 6.5;
+      this.edges.add(line);
+    };
     for (const edge of edges) {
       const points = [];
       for (let i = 0; i + 2 < edge.length; i += 3) points.push(toShown(edge.slice(i, i + 3)));
-      const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color: 0x2a5fa8 }));
-      line.frustumCulled = false, line.renderOrder = 6.5;
-      this.edges.add(line);
+      add(points, 0x2a5fa8);
     }
+    for (const { at, to } of holds) add([toShown(at), toShown(to)], 0xc0661a);
     obstacles.forEach(([w, x, y, z, ...t], i) => this.place(this.things.children[i], new THREE.Quaternion(x, y, z, w), new THREE.Vector3(...t)));
   }
   // A pose in world coordinates, of vertices that are stored in shown ones: R (m + u v) + t = m + u (R v + (R m + t − m) / u).

@@ -97,7 +97,8 @@ class CornerGroups {
     const x = uy * wz - uz * wy, y = uz * wx - ux * wz, z = ux * wy - uy * wx, size = Math.hypot(x, y, z) || 1;
     return [x / size, y / size, z / size];
   }
-  // Positions and normals of all groups, into arrays of at least three numbers a group. Faces count by their area.
+  // Positions and normals of all groups, into arrays of at least three numbers a group. A face counts by the sine of its angle
+  // at the corner: by their areas, long triangles beside short ones would decide, and coarse meshes look faceted.
   place(p, position, normal) {
     const { vertex, group, kind } = this;
     normal.fill(0, 0, 3 * this.groups);
@@ -107,9 +108,11 @@ class CornerGroups {
       const ax = p[a], ay = p[a + 1], az = p[a + 2];
       const ux = p[b] - ax, uy = p[b + 1] - ay, uz = p[b + 2] - az, wx = p[c] - ax, wy = p[c + 1] - ay, wz = p[c + 2] - az;
       const x = uy * wz - uz * wy, y = uz * wx - ux * wz, z = ux * wy - uy * wx;
+      const vx = p[c] - p[b], vy = p[c + 1] - p[b + 1], vz = p[c + 2] - p[b + 2];
+      const ab = ux * ux + uy * uy + uz * uz, ac = wx * wx + wy * wy + wz * wz, bc = vx * vx + vy * vy + vz * vz;
       for (let k = 0; k < 3; k++) {
-        const g = 3 * group[i + k];
-        normal[g] += x, normal[g + 1] += y, normal[g + 2] += z;
+        const g = 3 * group[i + k], sides = k === 0 ? ab * ac : k === 1 ? ab * bc : ac * bc, weight = sides > 0 ? 1 / Math.sqrt(sides) : 0;
+        normal[g] += weight * x, normal[g + 1] += weight * y, normal[g + 2] += weight * z;
       }
     }
     for (let g = 0; g < this.groups; g++) {

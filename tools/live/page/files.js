@@ -1,0 +1,34 @@
+// A model that is dropped on the page is opened in place of the one that is shown.
+const openable = /\.(obj|ply|stl|off|glb)$/i, largestModel = 256;  // MB, as the program takes them
+
+function listenToFiles() {
+  const drops = (e) => e.dataTransfer?.types.includes("Files");
+  document.addEventListener("dragover", (e) => {
+    if (!drops(e)) return;
+    e.preventDefault();
+    document.body.classList.add("dropping");
+  });
+  document.addEventListener("dragleave", (e) => e.relatedTarget === null && document.body.classList.remove("dropping"));
+  document.addEventListener("drop", (e) => {
+    if (!drops(e)) return;
+    e.preventDefault();
+    document.body.classList.remove("dropping");
+    openFiles([...e.dataTransfer.files]);
+  });
+}
+async function openFiles(files) {
+  const models = files.filter((file) => openable.test(file.name));
+  if (models.length !== 1) return notice({ error: models.length === 0 ? `${files[0]?.name ?? "This"} cannot be opened here: drop a model (OBJ, PLY, STL, OFF or GLB)` : "Drop one model at a time" });
+  const [file] = models;
+  if (file.size > largestModel << 20) return notice({ error: `${file.name} has more than ${largestModel} MB` });
+  endStroke();
+  $("wait").textContent = `Opening ${file.name} …`, $("wait").hidden = false;
+  try {
+    const answer = await fetch("open?name=" + encodeURIComponent(file.name), { method: "POST", body: file });
+    if (!answer.ok) notice({ error: (await answer.text()).trim() });
+    else if (files.length > 1) notice({ notice: `Only ${file.name} is opened: materials and images are not shown` });
+  } catch (problem) {
+    notice({ error: `${file.name} could not be sent: ${problem.message}` });
+  }
+  $("wait").hidden = wire.open;
+}

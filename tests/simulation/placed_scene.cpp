@@ -162,6 +162,7 @@ CutScene random_cut_scene(std::uint64_t seed) {
     mesh = make_torus(0.7, 0.3, 16, 8);
     half = 0.7;
     line = 0.7;
+    cut.is_thin = true;
   }
   cut.models = {.all = mesh, .bodies = {mesh}};
   Scene& scene = cut.scene;

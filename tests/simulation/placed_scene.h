@@ -16,6 +16,8 @@ struct CutScene {
   PlacedModels models;
   Scene scene;
   std::string about;  ///< what it is, for a failing test
+  /// Two nodes lie across the model: its stiffness depends on where points of the scheme are.
+  bool is_thin = false;
 };
 
 /// A way of placing a scene in space: x ↦ scale · (±x_axis[0], ±x_axis[1], ±x_axis[2]) + offset.

@@ -105,7 +105,8 @@ void bind_piece(py::module_& module) {
           "centroid", [](const Piece& self) { return point(self.centroid); }, "Centroid of the material, (3,) float64.")
       .def_property_readonly(
           "hulls", [](const Piece& self) { return self.hulls; },
-          "Convex hulls that cover it, a list of Mesh; empty unless pieces(hulls=True).");
+          "Convex hulls of it, a list of Mesh; empty unless pieces(hulls=True). The piece sticks out of a hull\n"
+          "that has reached the limit of its corners, with 64 by about 1 % of its diagonal at most.");
 }
 
 void add_to_complex(py::module_& module) {

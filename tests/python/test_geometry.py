@@ -1,5 +1,6 @@
 """Geometry of the module kerf: values against known results, lifetimes of views, refusals."""
 import gc
+import os
 import threading
 import unittest
 
@@ -38,6 +39,19 @@ class Cracks(unittest.TestCase):
         np.testing.assert_allclose(bonds["normal"][0], [0, 0, -1], atol=1e-14)
         np.testing.assert_allclose(bonds["centroid"][0], [0.5, 0.5, 0.25], atol=1e-14)
         self.assertAlmostEqual(bonds["section"][0], 2**0.5 / 12, places=14)  # of a unit square, bent about a diagonal
+
+    def test_pieces_stick_out_of_limited_hulls_by_little(self):
+        models = [kerf.shapes.pumpkin(16)]
+        folder = os.environ.get("KERF_MODEL_FOLDER", "")
+        if os.path.exists(os.path.join(folder, "bear.off")):
+            models.append(kerf.Solid.load(os.path.join(folder, "bear.off")))
+        for model in models:
+            cracked = model.crack(kerf.score(model, pieces=30, seed=7))
+            for corners, most in ((64, 0.01), (32, 0.03)):
+                for piece in cracked.pieces(hulls=True, corners=corners):
+                    hull, = piece.hulls
+                    out = [(piece.vertices - corner[0]) @ normal for corner, normal in zip(hull.corners, hull.face_normals)]
+                    self.assertLessEqual(np.max(out), most * np.linalg.norm(np.ptp(piece.vertices, axis=0)))
 
     def test_the_lines_of_the_introduction(self):
         uv = CUBE[:, :2]

@@ -20,7 +20,7 @@ constexpr geo::Pattern patterns[] = {geo::Pattern::voronoi, geo::Pattern::planes
                                      geo::Pattern::bricks};
 
 Model model_of(const char* name, const geo::TriangleMesh& mesh) {
-  return {name, geo::Complex::from_skin(mesh), geo::signed_volume(mesh)};
+  return {name, mesh, geo::Complex::from_skin(mesh), geo::signed_volume(mesh)};
 }
 
 // Spheres with `lobes` bumps of a height, round an axis and along it.

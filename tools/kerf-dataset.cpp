@@ -15,7 +15,7 @@ namespace {
 
 struct Command {
   std::vector<std::string> models;
-  std::string patterns = "voronoi", pieces = "20", jagged = "0.01", split = "80,10,10", shard = "1/1", layout = "npz";
+  std::string patterns = "voronoi", pieces = "20", jagged = "0", split = "80,10,10", shard = "1/1", layout = "npz";
   int seeds = 100, per_shard = 100, attempts = 10;
   double bumps = 4;
   bool rotate = false, single = false, repair = false, strict = false;

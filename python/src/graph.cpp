@@ -182,14 +182,14 @@ void bind_graph(py::module_& module) {
           "Number of guides (section 8): points that shortest paths pass through. Retired ones are included.")
       .def_property_readonly(
           "bytes", [](const Graph& self) { return self.graph.bytes(); }, "Bytes of all rows and guides.")
-      .def(
+      .def_property_readonly(
           "edges",
           [](Graph& self) {
             make_edges(self);
             return self.edges;
           },
           "Edges i < j between nodes, ascending, (e, 2) uint32. Read-only.")
-      .def(
+      .def_property_readonly(
           "edge_lengths",
           [](Graph& self) {
             make_edges(self);

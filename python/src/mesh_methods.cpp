@@ -115,11 +115,11 @@ std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool
   }
 }
 
-std::vector<Shared> hulls(const Mesh& self, std::int64_t count, std::int64_t corners) {
-  if (count < 1 || count > 1000) throw geo::InputError("hulls: count must be from 1 to 1000");
-  if (corners < 4 || corners > 100000) throw geo::InputError("hulls: corners must be from 4 to 100000");
+std::vector<Shared> convex_decomposition(const Mesh& self, std::int64_t count, std::int64_t corners) {
+  if (count < 1 || count > 1000) throw geo::InputError("convex_decomposition: count must be from 1 to 1000");
+  if (corners < 4 || corners > 100000) throw geo::InputError("convex_decomposition: corners must be from 4 to 100000");
   if (collapsed_triangles(self.mesh) > 0 || self.mesh.triangles.empty())
-    throw geo::InputError("hulls: the mesh is empty, or a triangle has a vertex twice; repair it");
+    throw geo::InputError("convex_decomposition: the mesh is empty, or a triangle has a vertex twice; repair it");
   return without_gil([&] {
     std::vector<Shared> out;
     for (auto& hull :
@@ -203,10 +203,10 @@ void add_measures(py::class_<Mesh, Shared>& mesh) {
           "Smallest angle of each triangle, (m,) float64, degrees.")
       .def("nearest", &nearest, py::arg("points"),
            "The triangle nearest to each point, (n, 3): (n,) uint32. Raises InputError for an empty mesh.")
-      .def("hulls", &hulls, py::arg("count") = 1, py::arg("corners") = 64,
+      .def("convex_decomposition", &convex_decomposition, py::arg("count") = 1, py::arg("corners") = 64,
            "Approximate convex decomposition of a closed mesh: at most `count` convex hulls, a list of Mesh, of at "
            "most\n"
-           "`corners` vertices each (after Mamou and Ghorbel 2009). Hulls with no limit on vertices cover the mesh. "
+           "`corners` vertices each (after Mamou and Ghorbel 2009). Hulls below that limit cover the mesh. "
            "Empty\n"
            "for a planar mesh. Raises InputError.");
 }

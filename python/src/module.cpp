@@ -22,6 +22,7 @@ PYBIND11_MODULE(_kerf, module) {
   bind_crack_edits(module);
   bind_checks(module);
   bind_mesh_methods(module);
+  bind_mesh_space(module);
   bind_imports(module);
   bind_surface_files(module);
   bind_front_files(module);

@@ -146,7 +146,7 @@ void add_objects(Class& simulation) {
 
 template <class T>
 void sum(Class& simulation, const char* name, T (geo::Solid::*of)(const geo::State&) const, const char* doc) {
-  simulation.def(
+  simulation.def_property_readonly(
       name,
       [of](Simulation& self) {
         const Reading reading(self.busy);

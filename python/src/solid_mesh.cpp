@@ -20,6 +20,19 @@ std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh) {
   }
 }
 
+std::shared_ptr<Solid> model_of(const std::shared_ptr<Mesh>& mesh) {
+  if (auto solid = std::dynamic_pointer_cast<Solid>(mesh)) return solid;
+  if (mesh->mesh.two_sided()) throw geo::InputError("the mesh is cut already; give it to kerf.Complex()");
+  if (!mesh->as_model) {
+    geo::TriangleMesh whole = mesh->mesh;
+    whole.patch.clear();
+    whole.source.clear();
+    auto made = solid_or_remedy(std::move(whole));
+    if (!mesh->as_model) mesh->as_model = std::move(made);
+  }
+  return mesh->as_model;
+}
+
 std::shared_ptr<const geo::Complex> Solid::uncut() {
   if (!uncut_) {
     std::shared_ptr<const geo::Complex> made;

@@ -90,11 +90,11 @@ class Cracks(unittest.TestCase):
         c = cube().complex()
         f = c.front(LINE)
         f.advance(LINE + STEP)
-        points, faces, segments = c.points, c.faces(), f.segments
+        points, faces, segments = c.points, c.faces, f.segments
         f.advance(LINE + 2 * STEP)
         c.undo()
         np.testing.assert_array_equal(c.points, points)
-        np.testing.assert_array_equal(c.faces(), faces)
+        np.testing.assert_array_equal(c.faces, faces)
         self.assertEqual(f.step, 1)
         np.testing.assert_array_equal(f.segments[0][1], segments[0][1])
         with self.assertRaises(kerf.GeometryError):
@@ -207,7 +207,7 @@ class Cracks(unittest.TestCase):
 class Queries(unittest.TestCase):
     def test_incidence(self):
         c = cube().crack(plane())
-        faces, cracks, alive = c.faces(), c.face_cracks, c.alive
+        faces, cracks, alive = c.faces, c.face_cracks, c.alive
         self.assertEqual(alive.sum(), c.live_face_count)
         wall = np.flatnonzero(alive & (cracks == 1))
         np.testing.assert_allclose(c.points[faces[wall]][..., 2], 0.5)

@@ -19,7 +19,7 @@ struct Settings {
   std::vector<geo::Pattern> patterns;
   std::uint64_t first_seed = 1;
   int seeds = 100;  ///< fractures for each model and pattern
-  Range pieces{20, 20}, jagged{0.01, 0.01};
+  Range pieces{20, 20}, jagged{0, 0};
   double bumps = 4;                      ///< see geo::JaggedOptions::frequency
   int attempts = 10;                     ///< see geo::ScoreOptions
   bool rotate = false;                   ///< each piece about its centroid, at random

@@ -53,7 +53,10 @@ void add_hulls(Pieces& pieces, std::size_t parts, std::size_t corners, const geo
   std::atomic<std::size_t> done = 0;
   geo::parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      for (auto& hull : geo::convex_decomposition(pieces[p]->mesh, parts, corners))
+      const geo::Progress& stop = [&](std::string_view, std::size_t, std::size_t) {
+        return !progress || progress("hulls", done, pieces.size());
+      };
+      for (auto& hull : geo::convex_decomposition(pieces[p]->mesh, parts, corners, stop))
         pieces[p]->hulls.push_back(std::make_shared<Mesh>(std::move(hull)));
       geo::report(progress, "hulls", ++done, pieces.size());
     }

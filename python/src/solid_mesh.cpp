@@ -1,4 +1,5 @@
 // Solids are tested once, when they are made, without the GIL.
+#include "gil.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
 #include "mesh.h"
@@ -7,7 +8,7 @@ namespace kerf_python {
 
 Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(std::move(m)) {
   if (!known) {
-    py::gil_scoped_release release;
+    const GilRelease release;
     geo::require_solid(mesh);
   }
 }
@@ -37,7 +38,7 @@ std::shared_ptr<const geo::Complex> Solid::uncut() {
   if (!uncut_) {
     std::shared_ptr<const geo::Complex> made;
     {
-      py::gil_scoped_release release;
+      const GilRelease release;
       made = std::make_shared<const geo::Complex>(geo::Complex::from_skin(mesh));
     }
     if (!uncut_) uncut_ = std::move(made);

@@ -109,7 +109,7 @@ class Members(unittest.TestCase):
     """The rule of docs/python.md for properties and methods."""
 
     # Searches of the whole object, protocols of Python, and exports: methods whose result is no object of the module.
-    METHODS = {"crossings", "components", "keys", "to_bytes", "to_trimesh", "to_trimesh_kwargs", "show"}
+    METHODS = {"crossings", "components", "keys", "to_bytes", "to_trimesh", "to_open3d", "to_trimesh_kwargs", "show"}
 
     def classes(self):
         return [value for name, value in sorted(vars(kerf).items()) if inspect.isclass(value) and not issubclass(value, BaseException)]

@@ -54,6 +54,21 @@ def simulation(text=SCENE, **options):
     return kerf.Simulation(text, models=model(), **options)
 
 
+class Blades(unittest.TestCase):
+    def test_a_blade_without_thickness_has_no_force_and_says_so(self):
+        wedge = {"blade.0.back": [0, 0, 0.4], "blade.0.thickness": 0.06}
+        largest = []
+        for options in ({}, wedge):
+            run = simulation(set=options)
+            largest.append(0.0)
+            for _ in range(4):
+                run.step()
+                largest[-1] = max(largest[-1], np.abs(run.blade(0).force).max())
+        self.assertEqual(largest[0], 0)
+        self.assertGreater(largest[1], 0)
+        self.assertIn("thickness", kerf.BladeHandle.force.__doc__)
+
+
 class Scenes(unittest.TestCase):
     def test_fields(self):
         scene = kerf.Scene(SCENE, young=8e4, set={"blade.0.thickness": "0.1", "blade.0.back": [0, 0, 1]})

@@ -163,6 +163,23 @@ def test_text():
     scenes.check_pieces(solid, 9)
 
 
+def test_nurbs():
+    """A NURBS sphere, whose poles have triangles without area, is repaired and broken."""
+    bpy.ops.surface.primitive_nurbs_surface_sphere_add(location=(3, 0, 1))
+    found = scenes.last_object("nurbs")
+    select(found)
+    try:
+        fracture(pieces=6)
+        pieces, whole = scenes.pieces_of("nurbs"), found
+    except RuntimeError as error:
+        assert "degenerate" in str(error), error
+        assert bpy.ops.object.kerf_repair() == {"FINISHED"}
+        fracture(pieces=6)
+        pieces, whole = scenes.pieces_of("nurbs Solid"), bpy.data.objects["nurbs Solid"]
+    assert len(pieces) == 6
+    scenes.check_pieces(whole, 6)
+
+
 def test_instances():
     """An instance is refused with what to do."""
     inside = bpy.data.collections.new("inside")

@@ -4,7 +4,8 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
   libcli11-dev catch2 libembree-dev libpng-dev zlib1g-dev libwebp-dev libjs-three libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev libhdf5-dev libassimp-dev
   libhwy-dev libnanoflann-dev libbullet-dev libcgal-demo python3 lowdown doxygen"
 test_packages="universal-ctags clang-format chromium snakemake ffmpeg python3-numpy python3-vtk9 assimp-utils zsh blender xvfb xauth
-  python3-dev pybind11-dev mypy python3-pip python3-venv python3-scipy python3-tqdm python3-matplotlib python3-sphinx"
+  python3-dev pybind11-dev mypy python3-pip python3-venv python3-scipy python3-tqdm python3-matplotlib python3-sphinx
+  python3-open3d python3-torch python3-meshio"
 # Readers of assets come from npm. An installation of npm that is not Debian's serves, too.
 command -v npm >/dev/null || test_packages="$test_packages nodejs npm"
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <sstream>
 
 #include <kerf/error.h>
@@ -14,7 +15,7 @@ namespace {
 
 struct Command {
   std::vector<std::string> models;
-  std::string patterns = "voronoi", pieces = "20", jagged = "0.01", split = "80,10,10", shard = "1/1", layout = "npz";
+  std::string patterns = "voronoi", pieces = "20", jagged = "0", split = "80,10,10", shard = "1/1", layout = "npz";
   int seeds = 100, per_shard = 100, attempts = 10;
   double bumps = 4;
   bool rotate = false, single = false, repair = false, strict = false;
@@ -75,7 +76,9 @@ dataset::Settings settings_of(const Command& w, std::uint64_t seed) {
     throw tool::UsageError("--jagged must be fractions of the diagonal, at least 0 and below 1");
   if (!(w.bumps > 0 && w.bumps <= 1e4)) throw tool::UsageError("--bumps must be positive and at most 10000");
   if (w.seeds < 1 || w.seeds > 100000000) throw tool::UsageError("--seeds must be between 1 and 100000000");
-  if (seed > ~std::uint64_t(0) - 100000000) throw tool::UsageError("--seed is too large");
+  // Seeds are signed in archives.
+  if (seed > std::uint64_t(std::numeric_limits<std::int64_t>::max()) - 100000000)
+    throw tool::UsageError("--seed is too large");
   if (w.per_shard < 1 || w.per_shard > 10000) throw tool::UsageError("--per-shard must be between 1 and 10000");
   if (w.attempts < 1 || w.attempts > 10000) throw tool::UsageError("--attempts must be between 1 and 10000");
   s.first_seed = seed, s.seeds = w.seeds, s.bumps = w.bumps, s.attempts = w.attempts, s.per_shard = w.per_shard;

@@ -6,6 +6,7 @@ import numpy
 
 from . import arrays
 
+PIECES = "kerf_pieces_of"  # custom property of a collection of pieces: the name of their object
 GREY = (0.5, 0.5, 0.5, 1.0)  # colour of inner faces
 LOOP_TOTAL_IS_GIVEN = not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].is_readonly  # before Blender 4
 
@@ -60,9 +61,9 @@ def dressed_meshes(source, surfaces, names, inner):
         return found
 
     slots = list(source.materials)
-    if inner:
+    if inner and inner not in slots:
         slots = (slots or [None]) + [inner]  # a skin without material keeps none
-    material = numpy.full(len(triangles), len(slots) - 1, numpy.int32)
+    material = numpy.full(len(triangles), slots.index(inner) if inner else len(slots) - 1, numpy.int32)
     material[outer] = numpy.minimum(source.material, max(len(source.materials) - 1, 0))[from_source]
     smooth = numpy.ones(len(triangles), bool)
     smooth[outer] = source.smooth[from_source]
@@ -113,9 +114,13 @@ def _set_active(mesh, source):
 
 
 def place(made, source, offset=(0.0, 0.0, 0.0)):
-    """Puts an object at a point of the source's frame, below the source's parent."""
+    """Puts an object at a point of the source's frame, below the source's parent; below the source itself where that is animated."""
     world = source.frame @ mathutils.Matrix.Translation(offset)
     made.location, made.rotation_euler = world.to_translation(), world.to_euler()
+    if source.animated:
+        made.parent = source.object
+        made.matrix_parent_inverse = source.object.matrix_world.inverted_safe()
+        return
     parent = source.object.parent
     if parent:
         made.parent, made.parent_type, made.parent_bone = parent, source.object.parent_type, source.object.parent_bone
@@ -128,6 +133,20 @@ def collection(name, above):
     made = bpy.data.collections.new(name)
     above.children.link(made)
     return made
+
+
+def remove_pieces(names):
+    """Removes pieces of objects of these names, with their hulls and bonds, that earlier fractures made."""
+    for above in [found for found in bpy.data.collections if found.get(PIECES) in names]:
+        meshes = {made.data for made in above.all_objects if made.type == "MESH"}
+        below = list(above.children_recursive)
+        for made in list(above.all_objects):
+            bpy.data.objects.remove(made)
+        for mesh in meshes:
+            if not mesh.users:
+                bpy.data.meshes.remove(mesh)
+        for found in (*below, above):
+            bpy.data.collections.remove(found)
 
 
 def home(source, context):
@@ -146,6 +165,8 @@ def _layers(layer):
 def pieces(context, source, fracture, inner):
     """The collection and objects of the pieces, in order, with hulls as their children."""
     above = collection(f"{source.name} Pieces", home(source, context))
+    above[PIECES] = source.name
+    properties = {name: value for name, value in source.object.items() if not name.startswith(("_", "kerf_"))}
     names = [f"{source.name}_piece_{number:03}" for number in range(len(fracture.pieces))]
     surfaces = []
     for piece in fracture.pieces:
@@ -161,6 +182,8 @@ def pieces(context, source, fracture, inner):
         above.objects.link(new)
         place(new, source, piece.centroid)
         new.color, new.pass_index = source.object.color, source.object.pass_index
+        for name, value in properties.items():
+            new[name] = value
         new["volume"] = piece.volume
         made.append(new)
     if any(piece.hulls for piece in fracture.pieces):

@@ -41,7 +41,15 @@ class Work:
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "OBJECT" and any(o.type in source.TYPES for o in context.selected_objects)
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Leave edit mode first")
+        elif any(o.type in source.TYPES for o in context.selected_objects):
+            return True
+        elif any(o.is_instancer for o in context.selected_objects):
+            cls.poll_message_set("An instance has no faces of its own; make it real first (Object, Apply, Make Instances Real)")
+        else:
+            cls.poll_message_set("Select a mesh, curve, surface, text or metaball")
+        return False
 
     def prepare(self, context):
         """Reads the objects and makes the job; False after a report when there is nothing to do."""
@@ -168,6 +176,7 @@ class OBJECT_OT_kerf_fracture(Patterned, bpy.types.Operator):
 
     def finish(self, context, done):
         remove_walls({own.name for own, _ in done})
+        build.remove_pieces({own.name for own, _ in done})
         material = build.inner_material(self.inner_material or "Kerf Inner")
         count = bonds = 0
         for own, fracture in done:
@@ -176,6 +185,8 @@ class OBJECT_OT_kerf_fracture(Patterned, bpy.types.Operator):
             if self.rigid_bodies:
                 hulls = [child for piece in made for child in piece.children]
                 physics.add_bodies(context.scene, made, hulls, self.density, self.at_rest, own.object)
+                if own.animated:
+                    physics.release(context.scene, made)
                 if self.bonds:
                     physics.add_bonds(context.scene, own, above, made, fracture.bonds, self.strength)
             if self.hide_original:
@@ -187,6 +198,8 @@ class OBJECT_OT_kerf_fracture(Patterned, bpy.types.Operator):
             count, bonds = count + len(made), bonds + len(fracture.bonds)
             for note in fracture.notes:
                 self.report({"WARNING"}, f"{own.name}: {note}.")
+            if own.left_out:
+                self.report({"WARNING"}, f"{own.name}: pieces do not have its {', '.join(own.left_out)}.")
         self.report({"INFO"}, f"{count} pieces, {bonds} bonds in {time.monotonic() - self._begin:.1f} s.")
 
     def draw(self, context):
@@ -248,13 +261,7 @@ class OBJECT_OT_kerf_repair(Work, bpy.types.Operator):
         description="Wrap all parts in a new surface, of voxels of this fraction of the diagonal; for parts that overlap. 0: keep the triangles",
     )
 
-    @classmethod
-    def poll(cls, context):
-        return context.mode == "OBJECT" and any(o.type == "MESH" for o in context.selected_objects)
-
     def work(self, kerf, own, _, progress):
-        if own.object.type != "MESH":
-            raise backend.Refused("only meshes can be repaired; convert the object to a mesh first")
         return kerf.repair(own.model, self.voxel, self.smooth, progress)
 
     def finish(self, context, done):
@@ -262,6 +269,9 @@ class OBJECT_OT_kerf_repair(Work, bpy.types.Operator):
             self.report({"INFO"}, f"{own.name}: {words}.")
             if numpy.array_equal(vertices, own.model.vertices) and numpy.array_equal(triangles, own.model.triangles):
                 continue  # it was a solid: its polygons and modifiers stay
+            if own.object.type != "MESH":
+                self.add_mesh(context, own, vertices, triangles)
+                continue
             local, vertices, triangles = source.without_scale(own, vertices, triangles)
             triangle = _nearest_triangles(local, vertices, triangles)
             surface = (vertices, triangles, triangle, numpy.zeros((len(triangles), 3, 2)), numpy.zeros(3))
@@ -271,6 +281,20 @@ class OBJECT_OT_kerf_repair(Work, bpy.types.Operator):
                 mesh.use_auto_smooth, mesh.auto_smooth_angle = True, old.auto_smooth_angle
             own.object.modifiers.clear()
             own.object.data = mesh
+
+    def add_mesh(self, context, own, vertices, triangles):
+        """A solid beside an object that cannot hold triangles, a text or a curve, which is hidden."""
+        triangle = _nearest_triangles(own, vertices, triangles)
+        surface = (vertices, triangles, triangle, numpy.zeros((len(triangles), 3, 2)), numpy.zeros(3))
+        name = f"{own.name} Solid"
+        made = bpy.data.objects.new(name, build.dressed_meshes(own, [surface], [name], None)[0])
+        build.home(own, context).objects.link(made)
+        build.place(made, own)
+        own.object.select_set(False)
+        own.object.hide_set(True)
+        own.object.hide_render = True
+        made.select_set(True)
+        context.view_layer.objects.active = made
 
 
 def _nearest_triangles(own, vertices, triangles):

@@ -47,6 +47,15 @@ def add_bodies(scene, pieces, hulls, density, at_rest, like):
             bpy.ops.rigidbody.object_remove()
 
 
+def release(scene, pieces):
+    """Pieces follow the animated object that they are below until the present frame, and are bodies from the next on."""
+    first, now = world(scene).point_cache.frame_start, scene.frame_current
+    for piece in pieces:
+        for kinematic, frame in ((True, min(first, now)), (False, now + 1)):
+            piece.rigid_body.kinematic = kinematic
+            piece.keyframe_insert("rigid_body.kinematic", frame=frame)
+
+
 def add_bonds(scene, source, above, pieces, bonds, strength):
     """Adds an empty for each bond, with a fixed constraint that breaks at `strength`, in force per area, times the bond's area."""
     found = world(scene)

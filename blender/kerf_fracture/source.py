@@ -43,6 +43,8 @@ class Source:
     render_color: int
     materials: list
     texture_space: tuple  # location and size of generated texture coordinates
+    animated: bool  # whether the object moves by itself, not by its parent alone
+    left_out: list  # words for what pieces do not have
 
 
 def read(found, depsgraph):
@@ -133,7 +135,28 @@ def _arrays(found, evaluated, mesh):
         render_color=mesh.color_attributes.render_color_index,
         materials=[own and own.original for own in materials],
         texture_space=(place, size),
+        animated=_is_animated(found),
+        left_out=_left_out(found, mesh),
     )
+
+
+def _is_animated(found):
+    moves = found.animation_data
+    return bool(found.constraints) or moves is not None and bool(moves.action or moves.drivers or moves.nla_tracks)
+
+
+def _left_out(found, mesh):
+    """What the object has and pieces do not have, in words."""
+    lost = []
+    if getattr(found, "vertex_groups", None):
+        lost.append("vertex groups")
+    if getattr(found.data, "shape_keys", None):
+        lost.append("shape keys")
+    kept = {layer.name for layer in (*mesh.uv_layers, *mesh.color_attributes)} | {"position", "material_index", "sharp_face", "sharp_edge"}
+    own = [a.name for a in mesh.attributes if a.name not in kept and not a.name.startswith(".") and not a.is_internal]
+    if own:
+        lost.append(f"the attribute{'s' * (len(own) > 1)} {', '.join(own)}")
+    return lost
 
 
 def without_scale(own, vertices, triangles):

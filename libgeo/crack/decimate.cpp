@@ -9,6 +9,7 @@
 #include <queue>
 #include <unordered_map>
 
+#include "crack/all_or_nothing.h"
 #include "crack/edit_quality.h"
 #include "crack/features.h"
 #include "crack/local_edit.h"
@@ -20,11 +21,13 @@ namespace {
 
 class Decimator {
  public:
-  Decimator(Complex& k, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateStats& stats)
+  Decimator(Complex& k, std::span<FrontState* const> fronts, const DecimateOptions& options, DecimateStats& stats,
+            const Progress& progress)
       : k_(k),
         contacts_(fronts),
         options_(options),
         stats_(stats),
+        progress_(progress),
         allowed_(options.deviation * k.extent().diagonal()) {
     rules_.crease = std::cos(options.crease * std::numbers::pi / 180);
     rules_.keep_skin = false;
@@ -34,7 +37,8 @@ class Decimator {
   CrackDelta run() {
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
       if (k_.alive(FaceId(f))) queue(FaceId(f));
-    while (!todo_.empty() && k_.live_face_count() > options_.faces) {
+    for (std::size_t done = 0; !todo_.empty() && k_.live_face_count() > options_.faces; ++done) {
+      report(progress_, "decimate", done, done + todo_.size());
       const auto [length, a, b] = todo_.top();
       todo_.pop();
       if (k_.faces_around(a, b).empty()) continue;
@@ -90,6 +94,7 @@ class Decimator {
   crack::FrontContacts contacts_;
   const DecimateOptions& options_;
   DecimateStats& stats_;
+  const Progress& progress_;
   crack::FeatureRules rules_;
   double allowed_, limit_ = 0;
   std::priority_queue<Edge, std::vector<Edge>, std::greater<>> todo_;
@@ -100,14 +105,15 @@ class Decimator {
 }  // namespace
 
 CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options,
-                    DecimateStats* stats) {
+                    DecimateStats* stats, const Progress& progress) {
   if (!(options.deviation >= 0) || !(options.crease >= 0 && options.crease <= 180) ||
       !(options.angle > 0 && options.angle < 60))
     throw InputError(
         "decimation needs a deviation of 0 or more, a crease between 0 and 180 and an angle between 0 and 60 degrees");
   DecimateStats done;
   Stopwatch watch;
-  CrackDelta delta = Decimator(complex, fronts, options, done).run();
+  CrackDelta delta = crack::all_or_nothing(complex, fronts, progress,
+                                           [&] { return Decimator(complex, fronts, options, done, progress).run(); });
   done.seconds = watch.lap();
   if (stats) *stats = done;
   return delta;

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <unordered_set>
 
+#include "crack/all_or_nothing.h"
 #include "crack/edit_quality.h"
 #include "crack/features.h"
 #include "crack/local_edit.h"
@@ -25,8 +26,9 @@ using crack::LocalEdit;
 
 class Remesher {
  public:
-  Remesher(Complex& k, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshStats& stats)
-      : k_(k), contacts_(fronts), options_(options), stats_(stats), size_(k.extent().diagonal()) {
+  Remesher(Complex& k, std::span<FrontState* const> fronts, const RemeshOptions& options, RemeshStats& stats,
+           const Progress& progress)
+      : k_(k), contacts_(fronts), options_(options), stats_(stats), progress_(progress), size_(k.extent().diagonal()) {
     limit_ = 1 / std::tan(options.angle * std::numbers::pi / 180);
     rules_.crease = std::cos(options.crease * std::numbers::pi / 180);
   }
@@ -36,7 +38,8 @@ class Remesher {
     // A face is tried again when its neighbours change; these bounds end the loop. Larger:
     // more tries for faces that resist, and a later end where edits undo each other.
     std::size_t patience = 60 * todo_.size() + 400, divisions = 4 * todo_.size() + 40;
-    while (!todo_.empty() && patience-- > 0) {
+    for (std::size_t done = 0; !todo_.empty() && patience-- > 0; ++done) {
+      report(progress_, "remesh", done, done + todo_.size());
       const FaceId f = todo_.front();
       todo_.pop_front();
       queued_.erase(f);
@@ -207,6 +210,7 @@ class Remesher {
   crack::FrontContacts contacts_;
   const RemeshOptions& options_;
   RemeshStats& stats_;
+  const Progress& progress_;
   crack::FeatureRules rules_;
   double size_, limit_;
   std::deque<FaceId> todo_;
@@ -221,7 +225,7 @@ double smallest_angle(const std::array<Vec3, 3>& t) {
 }
 
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
-                  const RemeshOptions& options, RemeshStats* stats) {
+                  const RemeshOptions& options, RemeshStats* stats, const Progress& progress) {
   if (!(options.angle > 0 && options.angle <= 30) || !(options.deviation >= 0) || !(options.shortest > 0) ||
       !(options.crease > 0 && options.crease <= 180))
     throw InputError(
@@ -229,7 +233,8 @@ CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<Fr
         "of 0 to 180 degrees");
   RemeshStats done;
   Stopwatch watch;
-  CrackDelta delta = Remesher(complex, fronts, options, done).run(region);
+  CrackDelta delta = crack::all_or_nothing(
+      complex, fronts, progress, [&] { return Remesher(complex, fronts, options, done, progress).run(region); });
   done.seconds = watch.lap();
   if (stats) {
     stats->faces += done.faces, stats->flips += done.flips, stats->collapses += done.collapses,

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "crack/all_or_nothing.h"
 #include "crack/features.h"
 #include "crack/local_edit.h"
 #include "crack/noise.h"
@@ -25,8 +26,9 @@ constexpr int rounds = 8;
 
 class Roughener {
  public:
-  Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenStats& stats)
-      : k_(k), contacts_(fronts), options_(options), stats_(stats), size_(k.extent().diagonal()) {
+  Roughener(Complex& k, std::span<FrontState* const> fronts, const RoughenOptions& options, RoughenStats& stats,
+            const Progress& progress)
+      : k_(k), contacts_(fronts), options_(options), stats_(stats), progress_(progress), size_(k.extent().diagonal()) {
     rules_.crease = -1;  // bends of a crack are not features here
   }
 
@@ -71,7 +73,8 @@ class Roughener {
     std::vector<FaceId> todo;
     for (std::uint32_t f = 0; f < k_.face_count(); ++f)
       if (is_chosen(FaceId(f))) todo.push_back(FaceId(f));
-    while (!todo.empty()) {
+    for (std::size_t done = 0; !todo.empty(); ++done) {
+      report(progress_, "divide", done, done + todo.size());
       const FaceId f = todo.back();
       todo.pop_back();
       if (!k_.alive(f) || !(length_of(f, longest_edge(f)) > longest)) continue;
@@ -185,8 +188,10 @@ class Roughener {
   // neighbour has.
   void displace() {
     std::vector<Move> moves = plan_moves();
+    std::size_t done = 0;
     for (int round = 0; round < rounds; ++round)
       for (Move& move : moves) {
+        report(progress_, "displace", done++, moves.size() * rounds);
         if (move.complete) continue;
         const Vec3 from = k_.point(move.vertex);
         double fraction = 1;
@@ -207,6 +212,7 @@ class Roughener {
   crack::FrontContacts contacts_;
   const RoughenOptions& options_;
   RoughenStats& stats_;
+  const Progress& progress_;
   crack::FeatureRules rules_;
   double size_;
   std::vector<FaceId> new_faces_;
@@ -216,13 +222,14 @@ class Roughener {
 }  // namespace
 
 CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options,
-                   RoughenStats* stats) {
+                   RoughenStats* stats, const Progress& progress) {
   if (!(options.amplitude >= 0 && options.amplitude < 1) || !(options.frequency > 0 && options.frequency < 1e6) ||
       options.octaves < 1 || options.octaves > 16 || !(options.edge >= 0))
     throw InputError("the jaggedness's amplitude must be in [0, 1), its frequency positive, its octaves 1 to 16");
   RoughenStats done;
   Stopwatch watch;
-  CrackDelta delta = Roughener(complex, fronts, options, done).run();
+  CrackDelta delta = crack::all_or_nothing(complex, fronts, progress,
+                                           [&] { return Roughener(complex, fronts, options, done, progress).run(); });
   done.seconds = watch.lap();
   if (stats) *stats = done;
   return delta;

@@ -1,8 +1,13 @@
 // Quickhull (Barber, Dobkin, Huhdanpaa 1996) with exact orientations: the farthest outside point
 // replaces the facets that it sees by a cone over their horizon.
+//
+// A complete hull assigns an outside point to the first new facet that it is in front of, which is
+// fast. A limited one assigns it to the one that it is farthest in front of. Each new corner is
+// then the point that sticks out most of the hull so far.
 #include "geometry/convex_hull.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -14,14 +19,25 @@ namespace {
 struct Facet {
   Triangle v;
   Vec3 normal;
-  std::vector<std::uint32_t> outside;  // points in front of this facet and of no earlier one
+  double error = 0;                    // of distances, at most
+  std::vector<std::uint32_t> outside;  // points in front of this facet that are assigned to no other one
   std::uint32_t farthest = ~0u;        // of these; ~0u: none
-  double distance = 0;                 // of the farthest one
+  double distance = -1;                // of the farthest one
 };
+
+enum class Assignment { first_facet, farthest_facet };
 
 class Hull {
  public:
-  Hull(std::span<const Vec3> points, const Triangle& base, std::uint32_t top) : points_(points) {
+  Hull(std::span<const Vec3> points, const Triangle& base, std::uint32_t top, Assignment assignment)
+      : points_(points), assignment_(assignment) {
+    Vec3 lo = points[0];
+    Vec3 hi = points[0];
+    for (const Vec3& p : points) {
+      lo = lo.cwiseMin(p);
+      hi = hi.cwiseMax(p);
+    }
+    diameter_ = (hi - lo).norm();
     const auto& [a, b, c] = base;  // counter-clockwise from outside: the top is behind it
     std::vector<std::uint32_t> all(points.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -30,19 +46,17 @@ class Hull {
     assign_outside(all, 0);
   }
 
-  // Adds the point that is farthest outside. Returns false if no point is outside.
+  // Adds the point that is farthest in front of its facet. Returns false if no point is outside.
   bool grow() {
     const auto worst = std::max_element(facets_.begin(), facets_.end(),
                                         [](const Facet& f, const Facet& g) { return f.distance < g.distance; });
-    if (worst->farthest == ~0u) {
-      // A point may be outside by less than the rounding error of its distance.
-      const auto any = std::find_if(facets_.begin(), facets_.end(), [](const Facet& f) { return !f.outside.empty(); });
-      if (any == facets_.end()) return false;
-      return add(any->outside.front()), true;
-    }
+    if (worst->farthest == ~0u) return false;
     add(worst->farthest);
     return true;
   }
+
+  // By Euler's formula; a corner that a later one hides does not count any more.
+  std::size_t corner_count() const { return facets_.size() / 2 + 2; }
 
   std::vector<Triangle> triangles() const {
     std::vector<Triangle> result;
@@ -53,46 +67,73 @@ class Hull {
  private:
   // A facet without outside points.
   Facet make(const Triangle& v) const {
-    const Vec3 &a = points_[v[0]], &b = points_[v[1]], &c = points_[v[2]];
-    return {v, (b - a).cross(c - a).normalized(), {}, ~0u, 0};
+    const Vec3 b = points_[v[1]] - points_[v[0]];
+    const Vec3 c = points_[v[2]] - points_[v[0]];
+    const Vec3 n = b.cross(c);
+    // Differences, products and sums round a distance by 8 ε of the products' size, which
+    // exceeds the normal's where the facet is a sliver.
+    const double error = 8 * std::numeric_limits<double>::epsilon() * (b.norm() * c.norm() / n.norm() + 1) * diameter_;
+    return {.v = v, .normal = n.normalized(), .error = error};
+  }
+
+  // How far p is in front of f at least; none if it is not in front.
+  std::optional<double> distance(const Facet& f, std::uint32_t p) const {
+    const double d = f.normal.dot(points_[p] - points_[f.v[0]]);
+    if (d > f.error) return d - f.error;
+    if (d < -f.error || !is_in_front(f, p)) return std::nullopt;
+    return 0;
   }
   bool is_in_front(const Facet& f, std::uint32_t p) const {
     return orient3d(points_[f.v[0]], points_[f.v[1]], points_[f.v[2]], points_[p]) > 0;
   }
 
-  // Assigns each point to the first facet, from `first` on, that it is in front of.
+  // Assigns each point to one of the facets from `first` on that it is in front of.
   void assign_outside(const std::vector<std::uint32_t>& points, std::size_t first) {
-    for (const auto p : points)
-      for (std::size_t f = first; f < facets_.size(); ++f)
-        if (is_in_front(facets_[f], p)) {
-          Facet& facet = facets_[f];
-          facet.outside.push_back(p);
-          const double distance = facet.normal.dot(points_[p] - points_[facet.v[0]]);
-          if (distance > facet.distance) facet.distance = distance, facet.farthest = p;
-          break;
-        }
+    for (const auto p : points) {
+      Facet* best = nullptr;
+      double farthest = -1;
+      for (std::size_t f = first; f < facets_.size(); ++f) {
+        const auto d = distance(facets_[f], p);
+        if (!d || *d <= farthest) continue;
+        best = &facets_[f];
+        farthest = *d;
+        if (assignment_ == Assignment::first_facet) break;
+      }
+      if (!best) continue;
+      best->outside.push_back(p);
+      if (farthest <= best->distance) continue;
+      best->distance = farthest;
+      best->farthest = p;
+    }
   }
 
   // Replaces the facets visible from p by a cone of facets from their horizon to p.
   void add(std::uint32_t p) {
-    const auto visible =
-        std::stable_partition(facets_.begin(), facets_.end(), [&](const Facet& f) { return !is_in_front(f, p); });
-    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> edges;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
     std::vector<std::uint32_t> orphans;
-    for (auto f = visible; f != facets_.end(); ++f) {
-      for (std::size_t k = 0; k < 3; ++k) edges[{f->v[k], f->v[(k + 1) % 3]}] = true;
-      orphans.insert(orphans.end(), f->outside.begin(), f->outside.end());
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < facets_.size(); ++f) {
+      const Facet& facet = facets_[f];
+      if (!distance(facet, p)) {
+        if (f != first) facets_[first] = std::move(facets_[f]);
+        ++first;
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) edges.emplace_back(facet.v[k], facet.v[(k + 1) % 3]);
+      orphans.insert(orphans.end(), facet.outside.begin(), facet.outside.end());
     }
-    facets_.erase(visible, facets_.end());
-    const std::size_t first = facets_.size();
+    facets_.resize(first);
     // The horizon: edges of visible facets whose twins belong to hidden ones.
-    for (const auto& [edge, exists] : edges)
-      if (edges.count({edge.second, edge.first}) == 0) facets_.push_back(make({edge.first, edge.second, p}));
+    std::sort(edges.begin(), edges.end());
+    for (const auto& [a, b] : edges)
+      if (!std::binary_search(edges.begin(), edges.end(), std::pair(b, a))) facets_.push_back(make({a, b, p}));
     std::sort(orphans.begin(), orphans.end());
     assign_outside(orphans, first);
   }
 
   std::span<const Vec3> points_;
+  Assignment assignment_;
+  double diameter_ = 0;
   std::vector<Facet> facets_;
 };
 
@@ -120,8 +161,11 @@ std::vector<Triangle> convex_hull(std::span<const Vec3> points, std::size_t max_
   if (!d) return {};
   const int side = orient3d(o, points[*b], points[*c], points[*d]);
   if (side == 0) return {};
-  Hull hull(points, side < 0 ? Triangle{0, *b, *c} : Triangle{0, *c, *b}, *d);
-  for (std::size_t corners = 4; corners < max_corners && hull.grow();) ++corners;
+  const bool complete = max_corners >= points.size();
+  Hull hull(points, side < 0 ? Triangle{0, *b, *c} : Triangle{0, *c, *b}, *d,
+            complete ? Assignment::first_facet : Assignment::farthest_facet);
+  while (hull.corner_count() < max_corners && hull.grow()) {
+  }
   return hull.triangles();
 }
 

@@ -12,6 +12,7 @@
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 #include <sstream>
 
@@ -20,6 +21,7 @@
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
+#include "kerf/progress.h"
 #include "surface/shells.h"
 
 namespace geo {
@@ -42,14 +44,35 @@ openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec& grids, const std::strin
   return found;
 }
 
-openvdb::FloatGrid::Ptr level_set_of(const TriangleMesh& solid, double voxel) {
+// Stops OpenVDB where the caller does. Its threads ask.
+class Interrupter : public openvdb::util::NullInterrupter {
+ public:
+  explicit Interrupter(const Progress& progress) : progress_(progress) {}
+  bool wasInterrupted(int = -1) override {
+    if (!stopped_ && progress_ && !progress_("distances", 0, 1)) stopped_ = true;
+    return stopped_;
+  }
+  // A distance field that is interrupted is incomplete.
+  void throw_if_stopped() const {
+    if (stopped_) throw Interrupted();
+  }
+
+ private:
+  const Progress& progress_;
+  std::atomic<bool> stopped_ = false;
+};
+
+openvdb::FloatGrid::Ptr level_set_of(const TriangleMesh& solid, double voxel, const Progress& progress = {}) {
   openvdb::initialize();
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
   for (const Vec3& p : solid.vertices) points.emplace_back(float(p.x()), float(p.y()), float(p.z()));
   for (const auto& [a, b, c] : solid.triangles) triangles.emplace_back(a, b, c);
-  return openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*openvdb::math::Transform::createLinearTransform(voxel),
-                                                            points, triangles);
+  Interrupter interrupter(progress);
+  auto grid = openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(
+      interrupter, *openvdb::math::Transform::createLinearTransform(voxel), points, triangles);
+  interrupter.throw_if_stopped();
+  return grid;
 }
 
 template <class Grid>
@@ -129,14 +152,17 @@ TriangleMesh in_voxels(const TriangleMesh& mesh, const Vec3& middle, double voxe
 // A level set of plates around triangles, which reach `offset` voxels to both sides. Distances are
 // linear but at the triangles themselves, so that with an offset of a voxel or more interpolation
 // is exact.
-FloatGrid::Ptr plate_of(const TriangleMesh& sheets, double offset) {
+FloatGrid::Ptr plate_of(const TriangleMesh& sheets, double offset, const Progress& progress) {
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
   for (const Vec3& p : sheets.vertices) points.emplace_back(float(p.x()), float(p.y()), float(p.z()));
   for (const auto& [a, b, c] : sheets.triangles) triangles.emplace_back(a, b, c);
   const auto half_width = float(openvdb::LEVEL_SET_HALF_WIDTH);
+  Interrupter interrupter(progress);
   const auto grid = openvdb::tools::meshToUnsignedDistanceField<FloatGrid>(
-      *openvdb::math::Transform::createLinearTransform(1.0), points, triangles, {}, half_width + float(offset));
+      interrupter, *openvdb::math::Transform::createLinearTransform(1.0), points, triangles, {},
+      half_width + float(offset));
+  interrupter.throw_if_stopped();
   for (auto value = grid->beginValueOn(); value; ++value) value.setValue(*value - float(offset));
   openvdb::tools::changeBackground(grid->tree(), half_width);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
@@ -156,10 +182,10 @@ void halve_plate(TriangleMesh& plate, const TriangleMesh& sheets) {
 
 // Plates as voxels of their own thickness make them: twice as thick at first. Nothing where they
 // cross then, as in folds narrower than a voxel.
-std::optional<TriangleMesh> coarse_plate(const TriangleMesh& sheets, double voxel) {
+std::optional<TriangleMesh> coarse_plate(const TriangleMesh& sheets, double voxel, const Progress& progress) {
   const Vec3 middle = bounding_box(sheets).center();
   const TriangleMesh scaled = in_voxels(sheets, middle, voxel);
-  TriangleMesh mesh = surface_of(*plate_of(scaled, 1), {}, "the level set");
+  TriangleMesh mesh = surface_of(*plate_of(scaled, 1, progress), {}, "the level set");
   halve_plate(mesh, scaled);
   for (Vec3& p : mesh.vertices) p = middle + voxel * p;
   return check_surface(mesh, true).good() ? std::optional(std::move(mesh)) : std::nullopt;
@@ -167,36 +193,40 @@ std::optional<TriangleMesh> coarse_plate(const TriangleMesh& sheets, double voxe
 
 // The surface around closed parts and open sheets, without attributes. Where there are sheets,
 // voxels have half the edge, so that a plate is two of them thick.
-TriangleMesh surface_around(const TriangleMesh& closed, TriangleMesh sheets, double voxel) {
+TriangleMesh surface_around(const TriangleMesh& closed, TriangleMesh sheets, double voxel, const Progress& progress) {
   openvdb::initialize();
   sheets = joined(std::move(sheets), thin_shells(closed, voxel));
   const bool plates = !sheets.triangles.empty();
   // Half voxels of more sheets than this take gigabytes.
   constexpr double most = 1 << 22;
   if (plates && closed.triangles.empty() && area(sheets) / (voxel * voxel / 4) > most)
-    if (auto mesh = coarse_plate(sheets, voxel)) return std::move(*mesh);
+    if (auto mesh = coarse_plate(sheets, voxel, progress)) return std::move(*mesh);
   const double edge = plates ? voxel / 2 : voxel;
   const Vec3 middle = bounding_box(joined(closed, sheets)).center();
   FloatGrid::Ptr grid;
-  if (!closed.triangles.empty()) grid = level_set_of(in_voxels(closed, middle, edge), 1);
+  if (!closed.triangles.empty()) grid = level_set_of(in_voxels(closed, middle, edge), 1, progress);
   if (plates) {
-    const FloatGrid::Ptr plate = plate_of(in_voxels(sheets, middle, edge), 1);
+    const FloatGrid::Ptr plate = plate_of(in_voxels(sheets, middle, edge), 1, progress);
     if (grid)
       openvdb::tools::csgUnion(*grid, *plate);
     else
       grid = plate;
   }
   if (!grid) throw InputError("has no triangles that bound anything");
+  report(progress, "surface", 0, 1);
   TriangleMesh mesh = surface_of(*grid, {}, "the level set");
+  report(progress, "surface", 1, 1);
   for (Vec3& p : mesh.vertices) p = middle + edge * p;
   return mesh;
 }
 
 // Gives each triangle the attributes of the nearest one of `from`, which becomes its source.
-void take_attributes(const TriangleMesh& from, TriangleMesh& mesh) {
+void take_attributes(const TriangleMesh& from, TriangleMesh& mesh, const Progress& progress) {
   const TriangleBvh tree(corners_of(from));
-  for (const auto& [a, b, c] : mesh.triangles)
+  for (const auto& [a, b, c] : mesh.triangles) {
+    report(progress, "attributes", mesh.source.size(), mesh.triangles.size());
     mesh.source.push_back(tree.closest((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3).triangle);
+  }
   transfer_attributes(from, mesh);
 }
 
@@ -217,23 +247,24 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options) 
   return surface_of(*openvdb::gridPtrCast<openvdb::DoubleGrid>(grid), options, path);
 }
 
-TriangleMesh wrapped(const TriangleMesh& mesh, double voxel, OpenParts open) {
+TriangleMesh wrapped(const TriangleMesh& mesh, double voxel, OpenParts open, const Progress& progress) {
   TriangleMesh closed = mesh;
   const TriangleMesh sheets = take_sheets(closed, 0, open);
-  TriangleMesh result = surface_around(closed, sheets, voxel);
-  take_attributes(mesh, result);
+  TriangleMesh result = surface_around(closed, sheets, voxel, progress);
+  take_attributes(mesh, result, progress);
   return result;
 }
 
 TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions& options, OpenParts open,
-                           WrapStats* stats) {
+                           WrapStats* stats, const Progress& progress) {
   WrapStats done;
   const TriangleMesh sheets = take_sheets(mesh, options.weld_distance, open, &done.sheets);
   done.repair = repair(mesh, options);
   if (mesh.triangles.empty() && sheets.triangles.empty()) throw InputError("has no triangles that bound anything");
-  TriangleMesh solid = surface_around(mesh, sheets, voxel);
-  take_attributes(joined(std::move(mesh), sheets), solid);
+  TriangleMesh solid = surface_around(mesh, sheets, voxel, progress);
+  take_attributes(joined(std::move(mesh), sheets), solid, progress);
   // In ambiguous cells OpenVDB's surface may touch itself.
+  report(progress, "check", 0, 1);
   if (!check_surface(solid, true).good()) solid = repaired_solid(std::move(solid));
   if (stats) *stats = done;
   return solid;

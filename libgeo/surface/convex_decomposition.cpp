@@ -6,6 +6,7 @@
 #include "kerf/pieces.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -75,7 +76,7 @@ struct Division {
 };
 
 // The division that saves most, by planes at evenly spaced positions across the principal axes.
-Division divide(const Solid& solid, std::size_t max_vertices) {
+Division divide(const Solid& solid, std::size_t max_vertices, const std::function<void()>& after_plane) {
   constexpr int positions = 7;  // per axis; larger: better divisions, in proportionally more time
   Vec3 mean = Vec3::Zero();
   for (const auto& t : solid.triangles) mean += (t[0] + t[1] + t[2]) / (3 * double(solid.triangles.size()));
@@ -93,6 +94,7 @@ Division divide(const Solid& solid, std::size_t max_vertices) {
       const double offset = lo + (hi - lo) * k / (positions + 1);
       Solid under = below(solid, n, offset, 1, max_vertices), over = below(solid, n, offset, -1, max_vertices);
       const double saved = solid.volume - under.volume - over.volume;
+      after_plane();
       if (under.hull.triangles.empty() || over.hull.triangles.empty() || saved <= best.saved) continue;
       best = {{std::move(under), std::move(over)}, saved};
     }
@@ -103,13 +105,15 @@ Division divide(const Solid& solid, std::size_t max_vertices) {
 }  // namespace
 
 std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t max_hulls,
-                                               std::size_t max_vertices) {
+                                               std::size_t max_vertices, const Progress& progress) {
+  const auto tell = [&](std::size_t hulls) { report(progress, "hulls", hulls, max_hulls); };
   std::vector<Solid> all{Solid(corners_of(mesh), mesh.vertices, max_vertices)};
   if (all[0].hull.triangles.empty()) return {};
   const double least_saving = 0.01 * all[0].volume;
   std::vector<Division> next;
   while (all.size() < max_hulls) {
-    for (std::size_t p = next.size(); p < all.size(); ++p) next.push_back(divide(all[p], max_vertices));
+    for (std::size_t p = next.size(); p < all.size(); ++p)
+      next.push_back(divide(all[p], max_vertices, [&] { tell(all.size()); }));
     const auto best = static_cast<std::size_t>(
         std::max_element(next.begin(), next.end(), [](const auto& a, const auto& b) { return a.saved < b.saved; }) -
         next.begin());

@@ -7,3 +7,4 @@ from kerf._files import load, read_volume, write_level_set  # noqa: F401
 from kerf._kerf import *  # noqa: F401,F403
 from kerf._kerf import __version__  # noqa: F401
 from kerf._pictures import picture  # noqa: F401
+from kerf import _shown  # noqa: F401

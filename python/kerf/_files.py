@@ -5,8 +5,8 @@ from kerf import _kerf
 def load(path, unit=""):
     """Reads a file of any kind, recognised by its content.
 
-    A valid solid gives a Solid, a cut surface a Complex with its fronts, any other surface a Mesh; an OpenVDB volume
-    the Solid of its surface; fronts and sheets a list of Front; a .kerf file a Body; nodes a NodeSet.
+    A valid solid gives a Solid, a cut surface a Complex with its fronts; any other surface a Mesh, which is a sheet, or
+    a model that Solid.repaired() mends: its crack() says what is wrong. An OpenVDB volume gives the Solid of its surface; fronts and sheets a list of Front; a .kerf file a Body; nodes a NodeSet.
     unit: of a surface's coordinates, "mm" and so on, in place of what the file states; see Mesh.unit. What a surface's
     reader leaves out is a warning (UserWarning).
     Raises InputError, with the line or entry, for a malformed file; MissingInputError where there is none.

@@ -148,7 +148,7 @@ def picture(x, *, size=(960, 720), camera=(30.0, 22.0), zoom=1.0, up="z", color=
     nodes, edges = _flag("nodes", nodes), _flag("edges", edges)
     if (nodes or edges or not content.surfaces) and content.positions is not None:
         drawn_nodes = {"positions": content.positions, "spacing": content.spacing, "values": content.field if field is None else field}
-        drawn_nodes["edges"] = content.graph.edges().tolist() if edges and content.graph is not None else None
+        drawn_nodes["edges"] = content.graph.edges.tolist() if edges and content.graph is not None else None
     if drawn_nodes and explode and content.surfaces:
         raise _kerf.InputError("explode: nodes do not move with the pieces; draw nodes or explode")
     look = {
@@ -201,7 +201,7 @@ def _figures(x):
     if _is(x, "Complex"):
         return [("vertices", f"{x.vertex_count}"), ("faces", f"{x.live_face_count}"), ("cracks", f"{x.crack_count}")]
     if _is(x, "Body"):
-        return [("nodes", f"{len(x.nodes.positions)}"), ("edges", f"{len(x.graph.edges())}"), ("faces", f"{len(x.surface.faces)}")]
+        return [("nodes", f"{len(x.nodes.positions)}"), ("edges", f"{len(x.graph.edges)}"), ("faces", f"{len(x.surface.faces)}")]
     return [("frame", f"{x.frame}"), ("time", f"{x.time:.4g} s"), ("nodes", f"{len(x.positions)}"), ("largest stress", f"{max(x.stress, default=0):.4g} Pa")]
 
 

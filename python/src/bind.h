@@ -21,6 +21,7 @@ void bind_hierarchy(py::module_& module);        ///< crumbs and clusters of pie
 void bind_crack_edits(py::module_& module);      ///< remeshing, roughening, decimation
 void bind_checks(py::module_& module);           ///< reports, predicates, crossings
 void bind_mesh_methods(py::module_& module);     ///< repair, refinement, hulls
+void bind_mesh_space(py::module_& module);       ///< planes, transformation, points inside
 void bind_imports(py::module_& module);          ///< meshes of trimesh and Open3D
 void bind_surface_files(py::module_& module);    ///< files of surfaces
 void bind_front_files(py::module_& module);      ///< files of fronts

@@ -25,12 +25,12 @@ py::object snapshot(Body& self, py::object Body::*part, const Make& make) {
 }
 
 std::shared_ptr<Graph> graph_of(const geo::Body& body) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   return std::make_shared<Graph>(std::make_shared<const geo::NodeSet>(body.nodes), body.graph);
 }
 
 std::shared_ptr<Mesh> surface_of(const Body& self) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   auto mesh = self.body.surface.two_sided();
   if (self.model) geo::transfer_attributes(self.model->mesh, mesh);
   return std::make_shared<Mesh>(std::move(mesh));
@@ -72,7 +72,7 @@ py::tuple all_carriers(Body& self) {
   std::vector<std::int32_t> nodes;
   std::vector<double> distances;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     Carriers carriers;
     for (std::uint32_t v = 0; v < self.body.surface.surface_vertex_count(); ++v) {
       if (!self.body.surface.alive(geo::SurfaceVertexId(v))) continue;
@@ -151,7 +151,7 @@ py::list history_of(Body& self) {
 
 geo::BodyReport checked(Body& self) {
   const Reading reading(self.busy);
-  py::gil_scoped_release release;
+  const GilRelease release;
   return geo::check_body(self.body);
 }
 

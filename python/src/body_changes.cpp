@@ -45,7 +45,7 @@ BodyDelta split(Body& self, BodyFront& front, py::object next, const geo::CrackO
   points = geo::resample_front(positions_of(front.state), points, front.state.closed);
   BodyDelta out;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     out.delta = geo::split(self.body, front.state, points, options, &out.stats);
   }
   self.changed();
@@ -88,7 +88,7 @@ BodyDelta resize(Body& self, py::object nodes, py::object radii) {
       throw geo::InputError("nodes: node " + std::to_string(changes[i].first.value) + " is given twice");
   BodyDelta out;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     out.delta = geo::resize_nodes(self.body, changes);
   }
   self.changed();

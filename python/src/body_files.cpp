@@ -24,7 +24,7 @@ std::string bytes_of(const geo::Body& body) {
 // Writes the body, or appends what changed to a file of an earlier state.
 std::uint64_t save(Body& self, const Path& path, bool update) {
   const Reading reading(self.busy);
-  py::gil_scoped_release release;
+  const GilRelease release;
   if (update) {
     geo::KerfUpdate file(path.text);
     return geo::write_body(file, self.body);
@@ -46,7 +46,7 @@ void save_graph(Body& self, const Path& path) {
   if (!path.text.ends_with(".ply") && !path.text.ends_with(".vtu"))
     throw geo::InputError(path.text + ": ends in no known format; give .ply, .vtu or .hdf");
   const Reading reading(self.busy);
-  py::gil_scoped_release release;
+  const GilRelease release;
   geo::write_all(path, [&](std::ostream& out) {
     path.text.ends_with(".ply") ? geo::write_graph_ply(out, self.body) : geo::write_vtu(out, self.body);
   });
@@ -55,7 +55,7 @@ void save_graph(Body& self, const Path& path) {
 void export_file(const File& file, const Path& path) {
   if (!path.text.ends_with(".npz") && !path.text.ends_with(".json"))
     throw geo::InputError(path.text + ": ends in no known format; give .npz or .json");
-  py::gil_scoped_release release;
+  const GilRelease release;
   geo::write_all(path, [&](std::ostream& out) {
     path.text.ends_with(".npz") ? geo::write_npz(out, file) : geo::write_json(out, file);
   });
@@ -64,25 +64,25 @@ void export_file(const File& file, const Path& path) {
 void export_body(Body& self, const Path& path, double horizon) {
   const Reading reading(self.busy);
   if (geo::is_bond_folder(path.text)) {
-    py::gil_scoped_release release;
+    const GilRelease release;
     return geo::write_bond_folder(path.text, self.body, horizon);
   }
   std::string bytes;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     bytes = bytes_of(self.body);
   }
   export_file(File(geo::Input(std::move(bytes), "body")), path);
 }
 
 std::shared_ptr<Body> loaded(const Path& path) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   return std::make_shared<Body>(geo::read_body(path));
 }
 
 std::shared_ptr<Body> parsed(const py::bytes& bytes) {
   const auto text = bytes.cast<std::string>();
-  py::gil_scoped_release release;
+  const GilRelease release;
   return std::make_shared<Body>(geo::parse_body(text, "bytes"));
 }
 
@@ -90,7 +90,7 @@ py::bytes to_bytes(Body& self) {
   const Reading reading(self.busy);
   std::string bytes;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     bytes = bytes_of(self.body);
   }
   return py::bytes(bytes);
@@ -112,7 +112,7 @@ py::object read_section(const File& file, const std::string& name) {
   py::array out(py::dtype(dtype_of(section.dtype)), shape);
   if (static_cast<std::uint64_t>(out.nbytes()) != section.bytes) file.fail("section " + name);
   const std::span<std::byte> bytes(static_cast<std::byte*>(out.mutable_data()), section.bytes);
-  py::gil_scoped_release release;
+  const GilRelease release;
   file.read(name, bytes);
   return out;
 }
@@ -128,12 +128,12 @@ py::dict sections_of(const File& file) {
 }
 
 void compact(const Path& path) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   geo::KerfUpdate(path.text).compact();
 }
 
 void write_compacted(const File& file, const Path& path) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   geo::write_all(path, [&](std::ostream& out) { geo::write_compacted(out, file); });
 }
 
@@ -146,7 +146,7 @@ void bind_kerf_file(py::module_& module) {
       "KerfFile(path): checks everything but the arrays, each of which is checked when it is read. Raises InputError\n"
       "for another file, a newer version, or damage.")
       .def(py::init([](const Path& path) {
-             py::gil_scoped_release release;
+             const GilRelease release;
              return std::make_shared<File>(geo::Input(path.text));
            }),
            py::arg("path"), "See the class.")

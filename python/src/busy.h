@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "gil.h"
 #include "progress.h"
 
 namespace kerf_python {
@@ -64,7 +65,7 @@ class Writing {
 /// Runs `work` without the GIL.
 template <class Work>
 auto without_gil(const Work& work) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   return work();
 }
 

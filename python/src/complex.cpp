@@ -57,21 +57,19 @@ std::shared_ptr<Complex> complex_of(std::shared_ptr<Mesh> surface) {
   return std::make_shared<Complex>(std::move(made), std::move(surface));
 }
 
+std::shared_ptr<Complex> uncut_complex(const std::shared_ptr<Mesh>& mesh) {
+  const auto model = model_of(mesh);
+  const auto uncut = model->uncut();
+  return without_gil([&] { return std::make_shared<Complex>(geo::Complex(*uncut), model); });
+}
+
 ModelReading::ModelReading(py::handle object, const std::string& name) {
   if (py::isinstance<Complex>(object)) {
     cut_ = object.cast<std::shared_ptr<Complex>>();
     reading_ = std::make_unique<Reading>(cut_->busy);
     return;
   }
-  if (py::isinstance<Solid>(object)) {
-    uncut_ = object.cast<std::shared_ptr<Solid>>()->uncut();
-    return;
-  }
-  const auto mesh = mesh_argument(object, name);
-  uncut_ = without_gil([&] {
-    geo::require_solid(mesh->mesh);
-    return std::make_shared<const geo::Complex>(geo::Complex::from_two_sided(mesh->mesh));
-  });
+  uncut_ = model_of(mesh_argument(object, name))->uncut();
 }
 
 namespace {
@@ -182,14 +180,11 @@ void bind_complex(py::module_& module) {
   add_state(complex);
   add_calls(complex);
 
-  py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module.attr("Mesh"))
       .def(
-          "complex",
-          [](const std::shared_ptr<Solid>& self) {
-            const auto uncut = self->uncut();
-            return without_gil([&] { return std::make_shared<Complex>(geo::Complex(*uncut), self); });
-          },
-          "The crack complex of the model, without cracks (§ 5.1).");
+          "complex", [](const std::shared_ptr<Mesh>& self) { return uncut_complex(self); },
+          "The crack complex of the model, without cracks (§ 5.1). Raises InputError where the mesh is no valid "
+          "model.");
 }
 
 }  // namespace kerf_python

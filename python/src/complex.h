@@ -77,6 +77,9 @@ class Complex {
   std::shared_ptr<const geo::Pieces> found_;
 };
 
+/// The complex, without cracks, of a mesh that is a valid model. Throws as model_of().
+std::shared_ptr<Complex> uncut_complex(const std::shared_ptr<Mesh>& mesh);
+
 /// The complex of a model that a call reads: of a Complex, a Solid, or a mesh that is a valid
 /// solid.
 class ModelReading {

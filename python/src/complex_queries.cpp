@@ -76,7 +76,7 @@ void add_arrays(Class& complex) {
             return moved_points(std::move(out));
           },
           "Positions of all vertices, (vertex_count, 3) float64, material coordinates.")
-      .def(
+      .def_property_readonly(
           "faces",
           [](Complex& self) {
             return per_face<std::array<geo::VertexId, 3>>(self, {3}, [](const Face& f) { return f.v; });

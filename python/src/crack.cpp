@@ -4,6 +4,7 @@
 #include "bind.h"
 #include "fronts.h"
 #include "kerf/error.h"
+#include "mesh_space.h"
 #include "options.h"
 #include "score.h"
 
@@ -64,19 +65,53 @@ void sweep(const Shared& self, const geo::Front& front, const geo::CrackOptions&
 }
 
 bool is_sheet(py::handle what) {
-  return py::isinstance<ScoreResult>(what) || py::isinstance<Mesh>(what) || py::hasattr(what, "faces");
+  return py::isinstance<ScoreResult>(what) || py::isinstance<Mesh>(what) || py::isinstance<Plane>(what) ||
+         py::hasattr(what, "faces");
 }
 
-// The sheet of a score, of a mesh, or of an object like one.
-std::shared_ptr<Mesh> sheet_argument(py::handle what) {
+// The sheet of a score, of a plane, of a mesh, or of an object like one.
+std::shared_ptr<Mesh> sheet_argument(py::handle what, const Complex& across) {
   if (py::isinstance<ScoreResult>(what)) return what.cast<const ScoreResult&>().sheet;
+  if (py::isinstance<Plane>(what))
+    return std::make_shared<Mesh>(sheet_across(what.cast<const Plane&>(), across.complex.extent()));
   return mesh_argument(what, "sheet");
+}
+
+// Whether an array has integers.
+bool has_integers(const py::handle& object) {
+  const auto kind = py::module_::import("numpy").attr("asarray")(object).attr("dtype").attr("kind");
+  return kind.cast<std::string>() == "i" || kind.cast<std::string>() == "u";
+}
+
+// A pair of arrays may be vertices and faces, or two lines. Vertices and faces become a mesh; null:
+// two lines. Throws InputError for a pair that may be both.
+std::shared_ptr<Mesh> mesh_of_pair(const py::sequence& pair) {
+  try {
+    if (!has_integers(pair[1])) return nullptr;
+    MeshArguments arguments;
+    for (auto* at : {&arguments.uv, &arguments.normals, &arguments.colors, &arguments.groups, &arguments.group_names,
+                     &arguments.patch, &arguments.site, &arguments.source})
+      *at = py::none();
+    arguments.vertices = pair[0];
+    arguments.faces = pair[1];
+    auto mesh = std::make_shared<Mesh>(mesh_from(arguments));
+    const bool has_triangles = std::none_of(mesh->mesh.triangles.begin(), mesh->mesh.triangles.end(),
+                                            [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    if (!has_triangles) return nullptr;
+    if (!has_integers(pair[0])) return mesh;
+  } catch (const geo::InputError&) {
+    return nullptr;  // no indices of vertices
+  } catch (const py::error_already_set&) {
+    return nullptr;  // no arrays
+  }
+  throw geo::InputError(
+      "what: two arrays of integers may be a mesh or two lines; give kerf.Mesh(vertices, faces), or lines of floats");
 }
 
 void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& options, double max_move,
               ProgressReport& progress) {
   if (is_sheet(what)) {
-    insert(*self, sheet_argument(what)->mesh, options);
+    insert(*self, sheet_argument(what, *self)->mesh, options);
     return;
   }
   if (py::isinstance<py::list>(what) || py::isinstance<py::tuple>(what)) {
@@ -86,6 +121,11 @@ void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& opti
       for (const auto item : what) crack_by(self, item, options, max_move, progress);
       return;
     }
+    if (py::len(what) == 2)
+      if (const auto sheet = mesh_of_pair(py::reinterpret_borrow<py::sequence>(what))) {
+        insert(*self, sheet->mesh, options);
+        return;
+      }
   }
   for (const auto& front : fronts_from(what, "what")) {
     if (!front.is_sheet() && front.steps.size() < 2)
@@ -94,9 +134,22 @@ void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& opti
   }
 }
 
+// The complex of a model with cracks.
+Shared cracked(const std::shared_ptr<Mesh>& mesh, const py::object& what, double max_move, py::object progress,
+               Keywords&& keywords) {
+  const auto options = crack_options(keywords);
+  keywords.finish();
+  ProgressReport report(std::move(progress));
+  auto made = uncut_complex(mesh);
+  crack_by(made, what, options, max_move, report);
+  return made;
+}
+
 constexpr const char* crack_doc =
-    "what: a Score, a Mesh (a sheet), a Front, an array (steps, points, 3), a list of lines (points, 3), or a list of\n"
-    "scores, meshes and fronts. max_move divides steps in which a front point moves farther, model units; 0: never.\n"
+    "what: a Score, a Mesh (a sheet) or its arrays (vertices, faces), a Plane, a Front, an array (steps, points, 3), "
+    "a\n"
+    "list of lines (points, 3), or a list of scores, meshes, planes and fronts. max_move divides steps in which a "
+    "front point moves farther, model units; 0: never.\n"
     "Keywords, with the defaults of CrackOptions: snap, face_offset, clearance and jitter, lengths relative to the\n"
     "diagonal; attempts; seed. progress: a callable of (phase, done, total), called before each step; False stops.\n"
     "Raises InputError for what cannot be used, GeometryError where no attempt of a step passes the guard, "
@@ -105,27 +158,33 @@ constexpr const char* crack_doc =
 }  // namespace
 
 void bind_crack(py::module_& module) {
-  static const std::string of_solid =
-      std::string("The crack complex of the model with one or more cracks (§ 5).\n\n") + crack_doc;
+  static const std::string of_model =
+      std::string(
+          "The crack complex of the model with one or more cracks (§ 5). Raises InputError where the mesh is no\n"
+          "valid model, with the repair.\n\n") +
+      crack_doc;
   static const std::string of_complex =
       std::string(
           "Adds one or more cracks, each with a number of its own (§ 5). Steps before one that fails stay.\n\n") +
       crack_doc;
-  py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module.attr("Mesh"))
       .def(
           "crack",
-          [](const std::shared_ptr<Solid>& self, const py::object& what, double max_move, py::object progress,
+          [](const std::shared_ptr<Mesh>& self, const py::object& what, double max_move, py::object progress,
              py::kwargs given) {
-            Keywords keywords(std::move(given), "crack");
-            const auto options = crack_options(keywords);
-            keywords.finish();
-            ProgressReport report(std::move(progress));
-            const auto uncut = self->uncut();
-            const auto made = without_gil([&] { return std::make_shared<Complex>(geo::Complex(*uncut), self); });
-            crack_by(made, what, options, max_move, report);
-            return made;
+            return cracked(self, what, max_move, std::move(progress), Keywords(std::move(given), "crack"));
           },
-          py::arg("what"), py::arg("max_move") = 0.0, py::arg_v("progress", py::none()), of_solid.c_str());
+          py::arg("what"), py::arg("max_move") = 0.0, py::arg_v("progress", py::none()), of_model.c_str())
+      .def(
+          "split",
+          [](const std::shared_ptr<Mesh>& self, const py::object& what, py::object progress, py::kwargs given) {
+            const auto made = cracked(self, what, 0, progress, Keywords(std::move(given), "split"));
+            return py::cast(made).attr("pieces")(py::arg("progress") = progress);
+          },
+          py::arg("what"), py::arg_v("progress", py::none()),
+          "The pieces into which planes, sheets or other cracks divide the model, a list of Piece in descending order "
+          "of\n"
+          "volume: crack(what).pieces(). Raises as these.");
   py::class_<Complex, Shared>(module.attr("Complex"))
       .def(
           "crack",
@@ -143,11 +202,12 @@ void bind_crack(py::module_& module) {
             Keywords keywords(std::move(given), "insert");
             const auto options = crack_options(keywords);
             keywords.finish();
-            const auto mesh = sheet_argument(sheet);
+            const auto mesh = sheet_argument(sheet, self);
             return insert(self, mesh->mesh, options);
           },
           py::arg("sheet"),
-          "Inserts the parts of a sheet (a Mesh or a Score) in the material as one crack, in one step, and returns "
+          "Inserts the parts of a sheet (a Mesh, a Plane or a Score) in the material as one crack, in one step, and "
+          "returns "
           "the\n"
           "CrackDelta (§ 5.2, § 7). Any triangles will do, connected or not, crossing each other or not. Keywords as "
           "for\n"

@@ -33,7 +33,7 @@ void make_rows(Graph& self) {
   if (self.indptr) return;
   geo::CsrArrays arrays;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     arrays = geo::neighbor_arrays(*self.nodes, self.graph);
   }
   py::object indices = moved<std::int32_t>(std::move(arrays.indices)),
@@ -48,7 +48,7 @@ void make_fields(Graph& self) {
   std::vector<std::uint32_t> warped;
   std::vector<std::uint8_t> hidden;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     for (std::size_t i = 0; i < self.nodes->size(); ++i)
       for (const geo::Neighbor n : self.graph.neighbors(*self.nodes, geo::NodeId(i)))
         warped.push_back(n.warped), hidden.push_back(n.hidden);
@@ -63,7 +63,7 @@ void make_edges(Graph& self) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   std::vector<float> lengths;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     const auto arrays = geo::edge_arrays(*self.nodes, self.graph);
     edges.reserve(arrays.indices.size() / 2), lengths.reserve(arrays.indices.size() / 2);
     for (std::size_t i = 0; i + 1 < arrays.indptr.size(); ++i)
@@ -86,7 +86,7 @@ py::tuple components(const Graph& self) {
   std::vector<std::uint32_t> labels;
   std::uint32_t count = 0;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     count = self.graph.components(labels);
   }
   return py::make_tuple(count, moved<std::int32_t>(std::move(labels)));
@@ -182,14 +182,14 @@ void bind_graph(py::module_& module) {
           "Number of guides (section 8): points that shortest paths pass through. Retired ones are included.")
       .def_property_readonly(
           "bytes", [](const Graph& self) { return self.graph.bytes(); }, "Bytes of all rows and guides.")
-      .def(
+      .def_property_readonly(
           "edges",
           [](Graph& self) {
             make_edges(self);
             return self.edges;
           },
           "Edges i < j between nodes, ascending, (e, 2) uint32. Read-only.")
-      .def(
+      .def_property_readonly(
           "edge_lengths",
           [](Graph& self) {
             make_edges(self);

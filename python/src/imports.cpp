@@ -76,11 +76,7 @@ std::shared_ptr<Solid> from_trimesh(const py::object& mesh) {
   const bool by_face = py::isinstance<py::str>(kind) && kind.cast<std::string>() == "face";
   if (by_vertex) arguments.colors = filled(at(mesh, {"visual", "vertex_colors"}));
   if (by_face) arguments.colors = filled(at(mesh, {"visual", "face_colors"}));
-  if (!arguments.colors.is_none()) {
-    if (arguments.colors.attr("dtype").attr("kind").cast<std::string>() == "u")
-      arguments.colors = arguments.colors / py::float_(255.0);
-    if (by_face) arguments.colors = per_corner(arguments.colors);
-  }
+  if (!arguments.colors.is_none() && by_face) arguments.colors = per_corner(arguments.colors);
   return std::make_shared<Solid>(without_seams(mesh_from(arguments)));
 }
 
@@ -99,8 +95,6 @@ std::shared_ptr<Solid> from_open3d(const py::object& mesh) {
     arguments.colors = tensor("vertex", "colors");
     arguments.normals = tensor("vertex", "normals");
     arguments.groups = tensor("triangle", "material_ids");
-    if (!arguments.colors.is_none() && arguments.colors.attr("dtype").attr("kind").cast<std::string>() == "u")
-      arguments.colors = arguments.colors / py::float_(255.0);
   } else {
     arguments.vertices = filled(at(mesh, {"vertices"}));
     arguments.faces = filled(at(mesh, {"triangles"}));

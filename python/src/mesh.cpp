@@ -124,7 +124,8 @@ constexpr const char* mesh_doc =
     "A triangle mesh with attributes. It never changes; its arrays are read-only views.\n\n"
     "Mesh(vertices, faces, *, uv, normals, colors, groups, group_names, materials, patch, site, source)\n\n"
     "vertices: (n, 3) floats or integers. faces: (m, 3) integers. uv (…, 2), normals (…, 3) and colors (…, 3 or 4)\n"
-    "have one row per vertex, (n, …), or per corner, (m, 3, …). groups: (m,) integers or names. patch and site: of a\n"
+    "have one row per vertex, (n, …), or per corner, (m, 3, …). colors: 0 to 1, or uint8. groups: (m,) integers or "
+    "names. patch and site: of a\n"
     "two-sided surface. source: (m,) integers. Arrays are checked and copied. Raises InputError.";
 constexpr const char* solid_doc =
     "A valid model: a closed, manifold mesh, oriented outwards, that does not intersect itself.\n\n"

@@ -10,13 +10,16 @@
 
 namespace kerf_python {
 
+struct Solid;
+
 /// A mesh that never changes after it was made: views of its arrays stay valid as long as they
 /// live.
 struct Mesh {
   /// Takes the mesh over.
   explicit Mesh(geo::TriangleMesh m) : mesh(std::move(m)) {}
   virtual ~Mesh() = default;
-  const geo::TriangleMesh mesh;  ///< as given
+  const geo::TriangleMesh mesh;     ///< as given
+  std::shared_ptr<Solid> as_model;  ///< kept by model_of(); null until then
 };
 
 /// A valid model: closed, manifold, oriented outwards, free of self-intersection.
@@ -33,6 +36,10 @@ struct Solid : Mesh {
 /// The model of a mesh. Throws InputError, whose message names the remedy of the module, where it
 /// is none.
 std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh);
+
+/// The model of a mesh: itself where it is a Solid, else a Solid of its triangles and attributes,
+/// checked once. Throws as solid_or_remedy(), and for a cut surface. To be called with the GIL.
+std::shared_ptr<Solid> model_of(const std::shared_ptr<Mesh>& mesh);
 
 /// The arrays of a mesh as Python gives them; None where there is none.
 struct MeshArguments {

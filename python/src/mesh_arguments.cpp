@@ -80,6 +80,18 @@ std::vector<T> per_element(py::handle object, const std::string& name, std::size
   return out;
 }
 
+// Colours from 0 to 1: bytes are divided by 255. Throws InputError for other integers above 1.
+py::object unit_colors(const py::object& colors) {
+  if (colors.is_none()) return colors;
+  const py::object array = py::module_::import("numpy").attr("asarray")(colors);
+  const auto kind = array.attr("dtype").attr("kind").cast<std::string>();
+  if (kind == "u" && array.attr("dtype").attr("itemsize").cast<int>() == 1) return array / py::float_(255.0);
+  const bool integers = (kind == "u" || kind == "i") && array.attr("size").cast<py::ssize_t>() > 0;
+  if (integers && array.attr("max")().cast<double>() > 1)
+    throw geo::InputError("colors: integers above 1; give floats from 0 to 1, or uint8");
+  return colors;
+}
+
 }  // namespace
 
 geo::TriangleMesh mesh_from(const MeshArguments& arguments) {
@@ -91,7 +103,7 @@ geo::TriangleMesh mesh_from(const MeshArguments& arguments) {
   const auto vertices = mesh.vertices.size(), faces = mesh.triangles.size();
   mesh.attributes.uv = corners_from<geo::Vec2>(arguments.uv, "uv", mesh, 2);
   mesh.attributes.normal = corners_from<geo::Vec3>(arguments.normals, "normals", mesh, 3);
-  mesh.attributes.color = corners_from<geo::Color>(arguments.colors, "colors", mesh, 3);
+  mesh.attributes.color = corners_from<geo::Color>(unit_colors(arguments.colors), "colors", mesh, 3);
   mesh.attributes.materials = arguments.materials;
   set_groups(mesh, arguments);
   mesh.patch = per_element<std::int32_t>(arguments.patch, "patch", faces, -(1LL << 30), 1LL << 30);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "apart.h"
 #include "arguments.h"
 #include "bind.h"
 #include "busy.h"
@@ -11,6 +12,7 @@
 #include "kerf/error.h"
 #include "kerf/pieces.h"
 #include "mesh.h"
+#include "progress.h"
 
 namespace kerf_python {
 namespace {
@@ -49,8 +51,8 @@ std::shared_ptr<Solid> checked_solid(const py::object& given) {
   return solid_or_remedy(geo::TriangleMesh(mesh->mesh));
 }
 
-py::object wrap(const Shared& self, double voxel) {
-  return py::module_::import("kerf._formats").attr("wrapped")(self, voxel);
+py::object wrap(const Shared& self, double voxel, const py::object& progress) {
+  return py::module_::import("kerf._formats").attr("wrapped")(self, voxel, progress);
 }
 
 std::pair<Shared, geo::RepairStats> repaired(const Mesh& self, double weld, bool smooth, const std::string& inner) {
@@ -74,10 +76,13 @@ geo::TriangleMesh refined(const Mesh& self, double longest) {
 }
 
 // As geo::repaired_solid(), with a remedy in the message.
-Shared united(const Mesh& self, const geo::RepairOptions& options) {
-  return without_gil([&] {
+Shared united(const Shared& self, const geo::RepairOptions& options, const py::object& progress) {
+  ProgressReport report(progress);
+  return report.run([&](const geo::Progress& progress) {
     try {
-      return std::make_shared<Mesh>(geo::repaired_solid(self.mesh, options));
+      return run_apart(progress, "repair", [self, options](const geo::Progress&) {
+        return std::make_shared<Mesh>(geo::repaired_solid(self->mesh, options));
+      });
     } catch (const geo::GeometryError& e) {
       throw geo::InputError(std::string("repaired: ") + e.what() +
                             "; wrap it in a new surface: voxel=0.005 * diagonal");
@@ -91,19 +96,19 @@ Shared self_union(const Mesh& self) {
 }
 
 std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool smooth, double voxel, double longest,
-                                      const std::string& inner, const std::string& open) {
+                                      const std::string& inner, const std::string& open, const py::object& progress) {
   Shared mesh = mesh_argument(model, "mesh");
   plain(*mesh, "repaired");
   require_weld(weld, "repaired");
   const geo::RepairOptions options{weld, smooth, inner_from(inner, "repaired")};
   const geo::OpenParts parts = open_from(open);
   if (voxel != 0)
-    mesh =
-        py::module_::import("kerf._formats")
-            .attr("wrapped_solid")(mesh, voxel, weld, smooth, static_cast<int>(options.inner), static_cast<int>(parts))
-            .cast<Shared>();
+    mesh = py::module_::import("kerf._formats")
+               .attr("wrapped_solid")(mesh, voxel, weld, smooth, static_cast<int>(options.inner),
+                                      static_cast<int>(parts), progress)
+               .cast<Shared>();
   else
-    mesh = united(*mesh, options);
+    mesh = united(mesh, options, progress);
   if (longest != 0) mesh = std::make_shared<Mesh>(refined(*mesh, longest));
   try {
     const bool known = longest == 0;  // valid, by repaired_solid() or wrapped_solid()
@@ -115,15 +120,17 @@ std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool
   }
 }
 
-std::vector<Shared> hulls(const Mesh& self, std::int64_t count, std::int64_t corners) {
-  if (count < 1 || count > 1000) throw geo::InputError("hulls: count must be from 1 to 1000");
-  if (corners < 4 || corners > 100000) throw geo::InputError("hulls: corners must be from 4 to 100000");
+std::vector<Shared> convex_decomposition(const Mesh& self, std::int64_t count, std::int64_t corners,
+                                         py::object progress) {
+  if (count < 1 || count > 1000) throw geo::InputError("convex_decomposition: count must be from 1 to 1000");
+  if (corners < 4 || corners > 100000) throw geo::InputError("convex_decomposition: corners must be from 4 to 100000");
   if (collapsed_triangles(self.mesh) > 0 || self.mesh.triangles.empty())
-    throw geo::InputError("hulls: the mesh is empty, or a triangle has a vertex twice; repair it");
-  return without_gil([&] {
+    throw geo::InputError("convex_decomposition: the mesh is empty, or a triangle has a vertex twice; repair it");
+  ProgressReport report(std::move(progress));
+  return report.run([&](const geo::Progress& progress) {
     std::vector<Shared> out;
-    for (auto& hull :
-         geo::convex_decomposition(self.mesh, static_cast<std::size_t>(count), static_cast<std::size_t>(corners)))
+    for (auto& hull : geo::convex_decomposition(self.mesh, static_cast<std::size_t>(count),
+                                                static_cast<std::size_t>(corners), progress))
       out.push_back(std::make_shared<Mesh>(std::move(hull)));
     return out;
   });
@@ -203,12 +210,13 @@ void add_measures(py::class_<Mesh, Shared>& mesh) {
           "Smallest angle of each triangle, (m,) float64, degrees.")
       .def("nearest", &nearest, py::arg("points"),
            "The triangle nearest to each point, (n, 3): (n,) uint32. Raises InputError for an empty mesh.")
-      .def("hulls", &hulls, py::arg("count") = 1, py::arg("corners") = 64,
+      .def("convex_decomposition", &convex_decomposition, py::arg("count") = 1, py::arg("corners") = 64,
+           py::arg_v("progress", py::none()),
            "Approximate convex decomposition of a closed mesh: at most `count` convex hulls, a list of Mesh, of at "
            "most\n"
-           "`corners` vertices each (after Mamou and Ghorbel 2009). Hulls with no limit on vertices cover the mesh. "
+           "`corners` vertices each (after Mamou and Ghorbel 2009). Hulls below that limit cover the mesh. "
            "Empty\n"
-           "for a planar mesh. Raises InputError.");
+           "for a planar mesh. Raises InputError, Interrupted.");
 }
 
 void add_changes(py::class_<Mesh, Shared>& mesh) {
@@ -231,14 +239,14 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
           py::arg("longest"),
           "A plain mesh with edges of at most `longest`, model units: longer ones are bisected. The shape stays to\n"
           "rounding; attributes are interpolated. Raises InputError where over 20 million triangles would result.")
-      .def("wrap", &wrap, py::arg("voxel"),
+      .def("wrap", &wrap, py::arg("voxel"), py::arg_v("progress", py::none()),
            "A new surface around closed parts, which may intersect themselves, and open sheets: the zero level of "
            "their\n"
            "distance field, with voxels of edge `voxel`, model units, which also rounds edges by that length. A sheet\n"
            "becomes a plate of that thickness. Its source is the nearest triangle, which gives the attributes. Returns "
            "a Mesh. Raises InputError unless voxel is 0.0005 to 0.1 of "
            "the\n"
-           "diagonal.")
+           "diagonal, Interrupted.")
       .def(
           "transfer_attributes",
           [](const Mesh& self, const py::object& original) {
@@ -273,12 +281,13 @@ void bind_mesh_methods(py::module_& module) {
       .def_static(
           "repaired", &repaired_solid, py::arg("mesh"), py::arg("weld") = 0.0, py::arg("smooth") = false,
           py::arg("voxel") = 0.0, py::arg("longest") = 0.0, py::arg("inner") = "oriented", py::arg("open") = "auto",
+          py::arg_v("progress", py::none()),
           "A valid model of a surface with faults: Mesh.repair(weld, smooth, inner), then Mesh.wrap(voxel), or, where\n"
           "voxel is 0 and triangles cross, Mesh.self_union(), and Mesh.refine(longest) unless that is 0. Lengths are "
           "in\n"
           "model units. open: with a voxel, parts with open edges are sheets where closing them takes half of their\n"
           "area ('auto'), never ('closed'), or always ('sheets'); a sheet becomes a plate one voxel thick. Raises\n"
-          "InputError where the result is no valid model.");
+          "InputError where the result is no valid model, Interrupted.");
 }
 
 }  // namespace kerf_python

@@ -1,6 +1,8 @@
 // The extension kerf._kerf: the order in which classes are registered, so that signatures name
 // them.
+#include "apart.h"
 #include "bind.h"
+#include "gil.h"
 
 PYBIND11_MODULE(_kerf, module) {
   using namespace kerf_python;
@@ -22,6 +24,7 @@ PYBIND11_MODULE(_kerf, module) {
   bind_crack_edits(module);
   bind_checks(module);
   bind_mesh_methods(module);
+  bind_mesh_space(module);
   bind_imports(module);
   bind_surface_files(module);
   bind_front_files(module);
@@ -40,4 +43,6 @@ PYBIND11_MODULE(_kerf, module) {
   bind_simulation(module);
   bind_run_files(module);
   bind_pickles(module);
+  wait_for_threads_at_exit();
+  stop_calls_at_exit();
 }

@@ -85,7 +85,7 @@ py::array array_of(const py::object& self, const std::vector<double> geo::NodeSe
 }
 
 void save(const NodeSet& self, const Path& path) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   geo::write_all(path, [&](std::ostream& out) {
     path.text.ends_with(".ply") ? geo::write_nodes_ply(out, *self.nodes) : geo::write_pcd(out, *self.nodes);
   });
@@ -136,7 +136,7 @@ std::shared_ptr<const Mesh> solid_argument(py::handle object, const std::string&
   }
   auto mesh = mesh_argument(object, name);
   if (py::isinstance<Solid>(object)) return mesh;
-  py::gil_scoped_release release;
+  const GilRelease release;
   try {
     geo::require_solid(mesh->mesh);
   } catch (const geo::InputError& e) {
@@ -172,7 +172,7 @@ void bind_nodes(py::module_& module) {
       .def_static(
           "load",
           [](const Path& path) {
-            py::gil_scoped_release release;
+            const GilRelease release;
             return NodeSet(geo::read_nodes(path));
           },
           py::arg("path"), "Reads PCD or PLY with radius, spacing and volume. Raises InputError.")

@@ -53,7 +53,10 @@ void add_hulls(Pieces& pieces, std::size_t parts, std::size_t corners, const geo
   std::atomic<std::size_t> done = 0;
   geo::parallel_for(pieces.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
-      for (auto& hull : geo::convex_decomposition(pieces[p]->mesh, parts, corners))
+      const geo::Progress& stop = [&](std::string_view, std::size_t, std::size_t) {
+        return !progress || progress("hulls", done, pieces.size());
+      };
+      for (auto& hull : geo::convex_decomposition(pieces[p]->mesh, parts, corners, stop))
         pieces[p]->hulls.push_back(std::make_shared<Mesh>(std::move(hull)));
       geo::report(progress, "hulls", ++done, pieces.size());
     }
@@ -105,7 +108,8 @@ void bind_piece(py::module_& module) {
           "centroid", [](const Piece& self) { return point(self.centroid); }, "Centroid of the material, (3,) float64.")
       .def_property_readonly(
           "hulls", [](const Piece& self) { return self.hulls; },
-          "Convex hulls that cover it, a list of Mesh; empty unless pieces(hulls=True).");
+          "Convex hulls of it, a list of Mesh; empty unless pieces(hulls=True). The piece sticks out of a hull\n"
+          "that has reached the limit of its corners, with 64 by about 1 % of its diagonal at most.");
 }
 
 void add_to_complex(py::module_& module) {

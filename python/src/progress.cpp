@@ -52,11 +52,11 @@ geo::Progress ProgressReport::function() {
   return [impl = impl_.get()](std::string_view phase, std::size_t done, std::size_t total) {
     std::unique_lock lock(impl->mutex, std::try_to_lock);
     if (!lock) return true;  // another thread reports just now
-    if (impl->error) return false;
+    if (impl->error || is_ending()) return false;
     const auto now = std::chrono::steady_clock::now();
     if (now < impl->next && done != total) return true;
     impl->next = now + interval;
-    py::gil_scoped_acquire gil;
+    const GilAcquire gil;
     try {
       return impl->tell(std::string(phase), done, total);
     } catch (py::error_already_set& error) {

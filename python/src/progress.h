@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "gil.h"
 #include "kerf/progress.h"
 
 namespace kerf_python {
@@ -32,7 +33,7 @@ class ProgressReport {
   template <class Work>
   auto run(const Work& work) {
     try {
-      py::gil_scoped_release release;
+      const GilRelease release;
       return work(function());
     } catch (const geo::Interrupted&) {
       rethrow_python_error();

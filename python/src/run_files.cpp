@@ -15,14 +15,14 @@ namespace {
 void write_frame_nodes(const Path& path, const NodeSet& nodes, py::object stress) {
   geo::FrameNodes frame{*nodes.nodes, numbers_from(stress, "stress")};
   if (frame.stress.size() != frame.nodes.size()) throw geo::InputError("stress: give one value per node");
-  py::gil_scoped_release release;
+  const GilRelease release;
   geo::write_all(path, [&](std::ostream& out) { geo::write_frame_nodes(out, frame); });
 }
 
 py::tuple read_frame_nodes(const Path& path) {
   geo::FrameNodes frame;
   {
-    py::gil_scoped_release release;
+    const GilRelease release;
     frame = geo::parse_frame_nodes(geo::read_all(path), path.text);
   }
   return py::make_tuple(NodeSet(std::move(frame.nodes)), moved<double>(std::move(frame.stress)));
@@ -63,7 +63,7 @@ void write_usd(const Path& path, py::object frames, double frame_rate, const std
   run.surface = [&](std::size_t i) { return surfaces[i] ? surfaces[i]->mesh : geo::read_surface(paths[0][i]).mesh; };
   if (!rigid.empty())
     run.obstacles = [&](std::size_t i) { return rigid[i] ? rigid[i]->mesh : geo::read_surface(paths[1][i]).mesh; };
-  py::gil_scoped_release release;
+  const GilRelease release;
   geo::write_all(path, [&](std::ostream& out) { geo::write_usda(out, run); });
 }
 

@@ -9,6 +9,7 @@
 
 #include "arguments.h"
 #include "bind.h"
+#include "gil.h"
 #include "kerf/error.h"
 #include "pose.h"
 
@@ -89,7 +90,7 @@ std::filesystem::path current_folder() {
 }
 
 std::shared_ptr<const Scene> parsed(std::string text, std::string name, std::string folder, geo::SceneOverrides o) {
-  py::gil_scoped_release release;
+  const GilRelease release;
   return std::make_shared<const Scene>(std::move(text), std::move(name), std::move(folder), std::move(o));
 }
 

@@ -97,6 +97,14 @@ std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& p
       ScoreResult{std::make_shared<Mesh>(std::move(made.sheet)), made.pieces, made.attempts});
 }
 
+py::object fracture(const py::object& self, const py::object& pieces, const std::string& pattern,
+                    const py::object& progress, py::kwargs given) {
+  given["pieces"] = pieces;
+  const auto walls = score(self, pattern, progress, std::move(given));
+  const py::object cut = self.attr("crack")(walls, py::arg("progress") = progress);
+  return cut.attr("pieces")(py::arg("progress") = progress);
+}
+
 }  // namespace
 
 void bind_score(py::module_& module) {
@@ -109,6 +117,13 @@ void bind_score(py::module_& module) {
       .def_readonly("attempts", &ScoreResult::attempts, "Number of patterns that were tried.")
       .def("__repr__",
            [](const ScoreResult& self) { return "<kerf.Score for " + std::to_string(self.pieces) + " pieces>"; });
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module.attr("Mesh"))
+      .def("fracture", &fracture, py::arg("pieces") = geo::ScoreOptions{}.pieces, py::arg("pattern") = "voronoi",
+           py::arg_v("progress", py::none()),
+           "The pieces of the model broken by a pattern, a list of Piece in descending order of volume:\n"
+           "crack(kerf.score(self, pattern, pieces=pieces)).pieces(). Keywords as for kerf.score(): seed, jagged and "
+           "so on.\n"
+           "Raises InputError where the mesh is no valid model, and as these.");
   module.attr("PATTERNS") =
       py::tuple(py::cast(std::vector<std::string>(geo::pattern_names.begin(), geo::pattern_names.end())));
   module.def(
@@ -118,7 +133,7 @@ void bind_score(py::module_& module) {
       "model: a Solid, a Complex, or a Mesh that is a valid solid. pattern: one of kerf.PATTERNS. Keywords, with the\n"
       "defaults of the C++ structures: pieces=20, from 1 to 1000000; attempts=60; seed=1; depth=1, below 1 a partial\n"
       "score: how deep walls are cut in, as a fraction of their greatest depth.\n"
-      "Fractal bumps: jagged=0.02, the amplitude, a fraction of the diagonal, 0: flat; frequency=8, bumps per "
+      "Fractal bumps: jagged=0, the amplitude, a fraction of the diagonal, 0: flat; frequency=8, bumps per "
       "diagonal;\n"
       "octaves=3; edge=0, the longest edge, a fraction of the diagonal, 0: 1 / (8 frequency).\n"
       "Pattern: axis, 'x', 'y', 'z' or three numbers (planes: normal; wood: grain; bricks: courses; radial, glass: "

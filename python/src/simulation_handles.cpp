@@ -152,7 +152,9 @@ void add_handles(py::module_& module, Class& simulation) {
             const Reading reading(h.simulation->busy);
             return last_force(h.simulation->last.blade_force, h.index);
           },
-          "Mean force of the material on it in the last frame, (3,) float64, N.");
+          "Mean force of the material on the blade's wedge in the last frame, (3,) float64, N. A blade without `back` "
+          "and\n"
+          "`thickness` is ideally sharp: it parts the material without a resistance, and the force is zero.");
   bind_handle<Kind::grip>(module, "GripHandle", "A grip of a run; see Simulation.grip().", move_other_doc)
       .def("end", &end, "Lets go, from now on.");
   bind_handle<Kind::obstacle>(module, "ObstacleHandle", "An obstacle of a run; see Simulation.obstacle().",

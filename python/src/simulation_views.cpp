@@ -146,7 +146,7 @@ void add_objects(Class& simulation) {
 
 template <class T>
 void sum(Class& simulation, const char* name, T (geo::Solid::*of)(const geo::State&) const, const char* doc) {
-  simulation.def(
+  simulation.def_property_readonly(
       name,
       [of](Simulation& self) {
         const Reading reading(self.busy);
@@ -269,7 +269,8 @@ void bind_frame_stats(py::module_& module) {
       .def_property_readonly("split_seconds", &S::split_seconds, "All phases of cutting.")
       .def_readonly("energy", &S::energy, "Elastic energy at the frame's end, J.")
       .def_property_readonly("blade_force", forces(&S::blade_force),
-                             "Mean force of the material on each blade, (b, 3), N.")
+                             "Mean force of the material on the wedge of each blade, (b, 3), N; zero without back and\n"
+                             "thickness.")
       .def_property_readonly("pull_force", forces(&S::pull_force),
                              "Mean force of the material on each pull, (p, 3), N.")
       .def_property_readonly("obstacle_force", forces(&S::obstacle_force),

@@ -207,9 +207,10 @@ void bind_solid(py::module_& module) {
             return self.solid.point_count();
           },
           "Number of material points.")
-      .def("moment_quality_counts", &quality,
-           "Numbers of nodes and points by the quality of their moment matrix (well-conditioned, ill-conditioned,\n"
-           "singular), and of points with widened support: a dict of nodes, points, widened.")
+      .def_property_readonly(
+          "moment_quality_counts", &quality,
+          "Numbers of nodes and points by the quality of their moment matrix (well-conditioned, ill-conditioned,\n"
+          "singular), and of points with widened support: a dict of nodes, points, widened.")
       .def(
           "rest",
           [](DeformingSolid& self) {

@@ -42,7 +42,7 @@ py::object stress_at(DeformingSolid& self, State& state, py::object x, double ra
   std::function<bool(const geo::Vec3&)> accepts;
   if (!sees.is_none())
     accepts = [&](const geo::Vec3& p) {
-      py::gil_scoped_acquire gil;
+      const GilAcquire gil;
       return PyObject_IsTrue(sees(point(p)).ptr()) == 1;
     };
   const auto out = without_gil([&] { return self.solid.stress_at(state.state, at, radius, accepts); });

@@ -1,4 +1,5 @@
 // Solids are tested once, when they are made, without the GIL.
+#include "gil.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
 #include "mesh.h"
@@ -7,7 +8,7 @@ namespace kerf_python {
 
 Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(std::move(m)) {
   if (!known) {
-    py::gil_scoped_release release;
+    const GilRelease release;
     geo::require_solid(mesh);
   }
 }
@@ -20,11 +21,24 @@ std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh) {
   }
 }
 
+std::shared_ptr<Solid> model_of(const std::shared_ptr<Mesh>& mesh) {
+  if (auto solid = std::dynamic_pointer_cast<Solid>(mesh)) return solid;
+  if (mesh->mesh.two_sided()) throw geo::InputError("the mesh is cut already; give it to kerf.Complex()");
+  if (!mesh->as_model) {
+    geo::TriangleMesh whole = mesh->mesh;
+    whole.patch.clear();
+    whole.source.clear();
+    auto made = solid_or_remedy(std::move(whole));
+    if (!mesh->as_model) mesh->as_model = std::move(made);
+  }
+  return mesh->as_model;
+}
+
 std::shared_ptr<const geo::Complex> Solid::uncut() {
   if (!uncut_) {
     std::shared_ptr<const geo::Complex> made;
     {
-      py::gil_scoped_release release;
+      const GilRelease release;
       made = std::make_shared<const geo::Complex>(geo::Complex::from_skin(mesh));
     }
     if (!uncut_) uncut_ = std::move(made);

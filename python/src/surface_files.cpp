@@ -13,12 +13,13 @@
 #include "kerf/files.h"
 #include "kind.h"
 #include "pieces.h"
+#include "plain_files.h"
 
 namespace kerf_python {
 namespace {
 
-[[noreturn]] void unknown_ending(const std::string& path) {
-  throw geo::InputError(path + ": ends in no known format; give .ply, .obj or .glb");
+[[noreturn]] void unknown_ending(const std::string& path, const char* known) {
+  throw geo::InputError(path + ": ends in no known format; give " + known);
 }
 
 // The metres of a unit that a caller names; 0 without a name. Throws InputError.
@@ -42,6 +43,17 @@ void warn_of_obj(const geo::TriangleMesh& mesh, const std::string& path) {
   if (!path.ends_with(".obj") || (!mesh.attributes.library.glb && mesh.attributes.uv2.empty())) return;
   const std::string text =
       path + ": left out: materials but their names, second texture coordinates; a .ply keeps them";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+// Warns of what STL and OFF do not hold. Throws InputError where single precision is too coarse.
+void warn_of_plain(const geo::TriangleMesh& mesh, const std::string& path) {
+  const bool stl = path.ends_with(".stl");
+  if (!stl && !path.ends_with(".off")) return;
+  if (stl && !geo::single_precision_offset(geo::bounding_box(mesh)).isZero(0))
+    throw geo::InputError(path + ": the model is too far from the origin for single precision; save a .ply");
+  if (mesh.attributes.empty() && mesh.patch.empty()) return;
+  const std::string text = path + ": left out: all but vertices and faces; a .ply keeps them";
   if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
@@ -128,14 +140,19 @@ void write_ply(std::ostream& out, const geo::TriangleMesh& mesh, double unit) {
 void save_mesh(const Mesh& self, const Path& path, const std::string& unit_name) {
   const std::string& p = path.text;
   const double unit = metres_of(unit_name);
-  if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p);
+  const auto ends = [&](const char* ending) { return p.ends_with(ending); };
+  if (!ends(".ply") && !ends(".obj") && !ends(".glb") && !ends(".stl") && !ends(".off"))
+    unknown_ending(p, ".ply, .obj, .glb, .stl or .off");
   warn_of_obj(self.mesh, p);
+  warn_of_plain(self.mesh, p);
   warn_of_offset(geo::bounding_box(self.mesh), p);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
-      p.ends_with(".ply")   ? write_ply(out, self.mesh, unit)
-      : p.ends_with(".obj") ? geo::write_obj(out, self.mesh)
-                            : write_glb(out, self, unit);
+      if (ends(".ply")) return write_ply(out, self.mesh, unit);
+      if (ends(".obj")) return geo::write_obj(out, self.mesh);
+      if (ends(".stl")) return write_stl(out, self.mesh);
+      if (ends(".off")) return write_off(out, self.mesh);
+      write_glb(out, self, unit);
     });
   });
 }
@@ -171,7 +188,7 @@ struct SaveOptions {
 void save_complex(Complex& self, const Path& path, const SaveOptions& w, const std::string& unit_name) {
   const std::string& p = path.text;
   const double unit = metres_of(unit_name);
-  if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p);
+  if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p, ".ply, .obj or .glb");
   require_tile(w.tile, w.strength);
   if (w.corners != 0 && (w.corners < 4 || w.corners > 100000))
     throw geo::InputError("save: corners must be 0 or from 4 to 100000");
@@ -247,7 +264,9 @@ void bind_surface_files(py::module_& module) {
           py::arg("data"), py::arg("name") = "bytes", py::arg("unit") = "",
           "As load(), from bytes in memory; `name` stands for the file in messages.")
       .def("save", &save_mesh, py::arg("path"), py::arg("unit") = "",
-           "Writes .ply (binary, with all arrays), .obj or .glb (glTF 2.0, in metres), by the path's ending. unit: of\n"
+           "Writes .ply (binary, with all arrays), .obj, .glb (glTF 2.0, in metres), .stl or .off, by the path's "
+           "ending.\n"
+           "unit: of\n"
            "the coordinates, \"mm\" and so on, in place of the mesh's own. The file is replaced when it is complete.\n"
            "Raises OutputError where it cannot be written, InputError for another ending.");
   py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))

@@ -51,13 +51,14 @@ def to_trimesh(mesh: kerf.Mesh) -> Any:
 
 def to_open3d(mesh: kerf.Mesh) -> Any:
     assert mesh.uv is not None
-    faces, uv = mesh.faces.astype(np.int32), mesh.uv.reshape(-1, 2)
+    # Copies: Open3D refuses arrays that cannot be written.
+    vertices, faces, uv = np.array(mesh.vertices), mesh.faces.astype(np.int32), np.array(mesh.uv).reshape(-1, 2)
     if importlib.util.find_spec("open3d"):
         open3d = importlib.import_module("open3d")
-        made = open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(mesh.vertices), open3d.utility.Vector3iVector(faces))
+        made = open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(vertices), open3d.utility.Vector3iVector(faces))
         made.triangle_uvs = open3d.utility.Vector2dVector(uv)
         return made
-    return TriangleMesh(mesh.vertices, faces, uv)
+    return TriangleMesh(vertices, faces, uv)
 
 
 def described(mesh: kerf.Mesh) -> NDArray[np.float64]:

@@ -20,7 +20,7 @@ constexpr geo::Pattern patterns[] = {geo::Pattern::voronoi, geo::Pattern::planes
                                      geo::Pattern::bricks};
 
 Model model_of(const char* name, const geo::TriangleMesh& mesh) {
-  return {name, geo::Complex::from_skin(mesh), geo::signed_volume(mesh)};
+  return {name, mesh, geo::Complex::from_skin(mesh), geo::signed_volume(mesh)};
 }
 
 // Spheres with `lobes` bumps of a height, round an axis and along it.
@@ -70,6 +70,7 @@ bool is_wrong(const Fracture& fracture) {
 Row measure(const Model& model, geo::Pattern pattern, int seeds) {
   Row row;
   Settings settings;
+  settings.jagged = {.low = 0.01, .high = 0.01};
   std::vector<Outcome> outcomes(static_cast<std::size_t>(seeds));
   const double start = cpu_seconds();
   for (std::size_t s = 0; s < outcomes.size(); ++s) {

@@ -59,6 +59,57 @@ TEST_CASE("no point is outside its convex hull", "[hull]") {
   }
 }
 
+namespace {
+
+// How far the points stick out of a hull, as a fraction of the diagonal of their box.
+double stick_out(const std::vector<Vec3>& points, const std::vector<Triangle>& hull) {
+  Vec3 lo = points[0];
+  Vec3 hi = points[0];
+  for (const Vec3& p : points) {
+    lo = lo.cwiseMin(p);
+    hi = hi.cwiseMax(p);
+  }
+  double farthest = 0;
+  for (const auto& [a, b, c] : hull) {
+    const Vec3 normal = (points[b] - points[a]).cross(points[c] - points[a]).normalized();
+    for (const Vec3& p : points) farthest = std::max(farthest, normal.dot(p - points[a]));
+  }
+  return farthest / (hi - lo).norm();
+}
+
+// Points of a rounded piece: an ellipsoid, cut by up to three planes, with points on the cuts.
+std::vector<Vec3> rounded_piece(Random& random) {
+  const Vec3 axes(1, 0.5 + 0.5 * random.uniform(), 0.5 + 0.5 * random.uniform());
+  std::vector<std::pair<Vec3, double>> planes(1 + random.below(3));
+  for (auto& [normal, offset] : planes) {
+    normal = random.direction();
+    offset = 0.3 * random.uniform();
+  }
+  std::vector<Vec3> points(2000);
+  for (Vec3& p : points) {
+    p = random.direction().cwiseProduct(axes);
+    for (const auto& [normal, offset] : planes) p -= std::max(0.0, normal.dot(p) - offset) * normal;
+  }
+  return points;
+}
+
+}  // namespace
+
+// The best 64 points on a ball leave 1.1 % of its diagonal between it and their hull, the best 32
+// leave 2.1 %: caps of 1/64 and 1/32 of the sphere, 21 % larger since circles do not tile it.
+// Points that are added one after another leave up to two thirds more.
+TEST_CASE("points stick out of limited hulls by little", "[hull]") {
+  const auto [first, count] = seeds(100);
+  for (int c = 0; c < count; ++c) {
+    const auto seed = first + static_cast<std::uint64_t>(c);
+    INFO("seed " << seed);
+    Random random(seed);
+    const auto points = rounded_piece(random);
+    CHECK(stick_out(points, convex_hull(points, 64)) < 5 / 3. * 0.011);
+    CHECK(stick_out(points, convex_hull(points, 32)) < 5 / 3. * 0.0215);
+  }
+}
+
 TEST_CASE("coplanar points have no hull", "[hull]") {
   CHECK(convex_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}).empty());
   CHECK(convex_hull(std::vector<Vec3>(7, Vec3(1, 2, 3))).empty());

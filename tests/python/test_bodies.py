@@ -90,8 +90,8 @@ class Graphs(unittest.TestCase):
         np.testing.assert_allclose(g.distances, straight, rtol=1e-6)
         count, label = g.components()
         self.assertEqual((count, label.max()), (1, 0))
-        self.assertEqual(len(g.edges()), g.edge_count)
-        i, j = g.edges()[7]
+        self.assertEqual(len(g.edges), g.edge_count)
+        i, j = g.edges[7]
         self.assertTrue(g.has_edge(i, j) and g.has_edge(j, i))
         with self.assertRaises(kerf.InputError):
             g.has_edge(0, n)
@@ -106,7 +106,7 @@ class Graphs(unittest.TestCase):
         front = body.front([[-0.1, 0.33, -0.1], [-0.1, 0.33, 1.1]])
         body.split(front, [[0.45, 0.33, -0.1], [0.45, 0.33, 1.1]])  # ends inside
         g, n = body.graph, len(nodes)
-        edges, lengths = g.edges(), g.edge_lengths()
+        edges, lengths = g.edges, g.edge_lengths
         graph = scipy.sparse.csr_matrix((lengths, (edges[:, 0], edges[:, 1])), shape=(n, n))
         paths = scipy.sparse.csgraph.dijkstra(graph, directed=False)
         rows = np.repeat(np.arange(n), np.diff(g.indptr))

@@ -105,5 +105,51 @@ class Coverage(unittest.TestCase):
         self.assertEqual(bare, [])
 
 
+class Members(unittest.TestCase):
+    """The rule of docs/python.md for properties and methods."""
+
+    # Searches of the whole object, protocols of Python, and exports: methods whose result is no object of the module.
+    METHODS = {"crossings", "components", "keys", "to_bytes", "to_trimesh", "to_open3d", "to_trimesh_kwargs", "show"}
+
+    def classes(self):
+        return [value for name, value in sorted(vars(kerf).items()) if inspect.isclass(value) and not issubclass(value, BaseException)]
+
+    def test_methods_without_arguments_make_objects(self):
+        wrong = []
+        for cls in self.classes():
+            for name, member in vars(cls).items():
+                signature = re.match(r"\w+\(self: [\w.]+\) -> (.*)", (getattr(member, "__doc__", None) or "").lstrip())
+                if name[0] == "_" or isinstance(member, property) or not signature or name in self.METHODS:
+                    continue
+                made = getattr(kerf, signature[1].rsplit(".")[-1], None)
+                if signature[1] != "None" and not inspect.isclass(made) and name not in ("surface", "copy"):
+                    wrong.append(f"{cls.__name__}.{name}() -> {signature[1]}")
+        self.assertEqual(wrong, [])
+
+    def test_properties_hold_their_parts(self):
+        model = kerf.shapes.block((1, 1, 1), edge=0.5)
+        cut = model.crack(kerf.score(model, "planes", pieces=2, seed=2))
+        body = kerf.Body(cut, spacing=0.4)
+        simulation = kerf.Simulation("[body]\nmesh = 'x'\nspacing = 0.5\n[material]\nyoung = 1e4\n", models=model)
+        seen = 0
+        for thing in (model, cut, cut.pieces()[0], kerf.score(model, pieces=2), body, body.graph, simulation, simulation.solid()):
+            for name in dir(type(thing)):
+                if name[0] == "_" or not isinstance(getattr(type(thing), name), property):
+                    continue
+                value = getattr(thing, name)
+                if type(value).__module__.startswith("kerf"):
+                    seen += 1
+                    again = getattr(thing, name)
+                    self.assertTrue(again is value or again == value or not hasattr(value, "vertices"), f"{type(thing).__name__}.{name}")
+        self.assertGreater(seen, 5)
+
+    def test_no_property_hides_a_method(self):
+        for cls in self.classes():
+            for base in cls.__mro__[1:]:
+                for name, member in vars(base).items():
+                    if name[0] != "_" and name in vars(cls):
+                        self.assertEqual(isinstance(member, property), isinstance(vars(cls)[name], property), f"{cls.__name__}.{name}")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -1,5 +1,6 @@
 """Geometry of the module kerf: values against known results, lifetimes of views, refusals."""
 import gc
+import os
 import threading
 import unittest
 
@@ -39,6 +40,19 @@ class Cracks(unittest.TestCase):
         np.testing.assert_allclose(bonds["centroid"][0], [0.5, 0.5, 0.25], atol=1e-14)
         self.assertAlmostEqual(bonds["section"][0], 2**0.5 / 12, places=14)  # of a unit square, bent about a diagonal
 
+    def test_pieces_stick_out_of_limited_hulls_by_little(self):
+        models = [kerf.shapes.pumpkin(16)]
+        folder = os.environ.get("KERF_MODEL_FOLDER", "")
+        if os.path.exists(os.path.join(folder, "bear.off")):
+            models.append(kerf.Solid.load(os.path.join(folder, "bear.off")))
+        for model in models:
+            cracked = model.crack(kerf.score(model, pieces=30, seed=7))
+            for corners, most in ((64, 0.01), (32, 0.03)):
+                for piece in cracked.pieces(hulls=True, corners=corners):
+                    hull, = piece.hulls
+                    out = [(piece.vertices - corner[0]) @ normal for corner, normal in zip(hull.corners, hull.face_normals)]
+                    self.assertLessEqual(np.max(out), most * np.linalg.norm(np.ptp(piece.vertices, axis=0)))
+
     def test_the_lines_of_the_introduction(self):
         uv = CUBE[:, :2]
         s = kerf.Solid(CUBE, CUBE_FACES, uv=uv, groups=["top"] * 6 + ["rest"] * 6)
@@ -76,11 +90,11 @@ class Cracks(unittest.TestCase):
         c = cube().complex()
         f = c.front(LINE)
         f.advance(LINE + STEP)
-        points, faces, segments = c.points, c.faces(), f.segments
+        points, faces, segments = c.points, c.faces, f.segments
         f.advance(LINE + 2 * STEP)
         c.undo()
         np.testing.assert_array_equal(c.points, points)
-        np.testing.assert_array_equal(c.faces(), faces)
+        np.testing.assert_array_equal(c.faces, faces)
         self.assertEqual(f.step, 1)
         np.testing.assert_array_equal(f.segments[0][1], segments[0][1])
         with self.assertRaises(kerf.GeometryError):
@@ -193,7 +207,7 @@ class Cracks(unittest.TestCase):
 class Queries(unittest.TestCase):
     def test_incidence(self):
         c = cube().crack(plane())
-        faces, cracks, alive = c.faces(), c.face_cracks, c.alive
+        faces, cracks, alive = c.faces, c.face_cracks, c.alive
         self.assertEqual(alive.sum(), c.live_face_count)
         wall = np.flatnonzero(alive & (cracks == 1))
         np.testing.assert_allclose(c.points[faces[wall]][..., 2], 0.5)

@@ -93,12 +93,12 @@ class Meshes(unittest.TestCase):
     def test_hulls(self):
         l_shape = kerf.Solid.repaired(kerf.Mesh(np.vstack([CUBE * [2, 1, 1], CUBE * [1, 1, 1] + [0, 1, 0]]),
                                                 np.vstack([CUBE_FACES, CUBE_FACES + 8])), voxel=0.05)
-        one, two = l_shape.hulls(), l_shape.hulls(2, corners=1000)
+        one, two = l_shape.convex_decomposition(), l_shape.convex_decomposition(2, corners=1000)
         self.assertEqual((len(one), len(two)), (1, 2))
         self.assertLess(sum(h.volume for h in two), one[0].volume)
         for bad in (dict(count=0), dict(corners=3)):
             with self.assertRaises(kerf.InputError):
-                l_shape.hulls(**bad)
+                l_shape.convex_decomposition(**bad)
 
     def test_attributes_are_transferred(self):
         model = cube(colors=CUBE)

@@ -232,7 +232,7 @@ def public_calls():
 
 
 SLOW = {"picture": dict(size=(16, 12), samples=1)}  # arguments that keep a call short
-SKIPPED = {"set_threads"}  # a thousand threads would serve nobody
+SKIPPED = {"set_threads", "show"}  # a thousand threads would serve nobody, and a window waits for someone to close it
 
 
 class RandomCalls(unittest.TestCase):

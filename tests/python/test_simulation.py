@@ -54,6 +54,21 @@ def simulation(text=SCENE, **options):
     return kerf.Simulation(text, models=model(), **options)
 
 
+class Blades(unittest.TestCase):
+    def test_a_blade_without_thickness_has_no_force_and_says_so(self):
+        wedge = {"blade.0.back": [0, 0, 0.4], "blade.0.thickness": 0.06}
+        largest = []
+        for options in ({}, wedge):
+            run = simulation(set=options)
+            largest.append(0.0)
+            for _ in range(4):
+                run.step()
+                largest[-1] = max(largest[-1], np.abs(run.blade(0).force).max())
+        self.assertEqual(largest[0], 0)
+        self.assertGreater(largest[1], 0)
+        self.assertIn("thickness", kerf.BladeHandle.force.__doc__)
+
+
 class Scenes(unittest.TestCase):
     def test_fields(self):
         scene = kerf.Scene(SCENE, young=8e4, set={"blade.0.thickness": "0.1", "blade.0.back": [0, 0, 1]})
@@ -154,10 +169,10 @@ class Runs(unittest.TestCase):
     def test_momentum(self):
         free = SCENE[:SCENE.index("[[blade]]")].replace("[ground]\npoint = [0, 0, -0.02]\nstiffness = 4e3\n", "")
         run = simulation(free, velocity=[1, 2, 3], gravity=[0, 0, 0], damping=0)
-        first, mass = run.momentum(), run.solid().mass.sum()
+        first, mass = run.momentum, run.solid().mass.sum()
         np.testing.assert_allclose(first, mass * np.array([1, 2, 3]), rtol=1e-9)
         run.run(2)
-        np.testing.assert_allclose(run.momentum(), first, rtol=1e-6)
+        np.testing.assert_allclose(run.momentum, first, rtol=1e-6)
 
     def test_resume(self):
         """A knife that Python moves, an interruption in the middle: the same frames, byte for byte."""
@@ -337,9 +352,9 @@ class Hands(unittest.TestCase):
         run.change(gravity=[0, 0, -1])
         run.run(2)
         mass = run.solid().mass.sum()
-        self.assertAlmostEqual(run.momentum()[2] / mass, -run.time, places=6)
+        self.assertAlmostEqual(run.momentum[2] / mass, -run.time, places=6)
         run.run(2)
-        self.assertGreater(run.momentum()[2], 0)  # the scene lets gravity act upwards from 0.09 s on
+        self.assertGreater(run.momentum[2], 0)  # the scene lets gravity act upwards from 0.09 s on
 
     def test_checkpoints_do_not_hold_what_was_added(self):
         with tempfile.TemporaryDirectory() as name:

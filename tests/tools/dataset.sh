@@ -30,10 +30,18 @@ python "$here/check_dataset.py" whole "$volumes" || fail "the data set"
 import glob
 found = list(fractures(glob.glob("whole/*/pumpkin-planes-3.npz")[0]))
 assert [seed for seed, *_ in found] == [3, 4]
-for _, pieces, bonds, area in found:
-    assert len(bonds) == len(area) > 0 and bonds.max() < len(pieces)
+for _, pieces, bonds, area, walls in found:
+    assert len(bonds) == len(area) == len(walls) > 0 and bonds.max() < len(pieces)
     for k in range(len(bonds)):
         assert {p for p in range(len(pieces)) if (pieces[p][2] == k + 1).any()} == set(bonds[k])
+        (v, t, _), (w, u, _) = (pieces[p] for p in bonds[k])
+        assert np.array_equal(v[t[walls[k][:, 0]]], w[u[walls[k][:, 1]]][:, [0, 2, 1]])
+try:
+    import torch
+    archive = np.load(glob.glob("whole/*/pumpkin-planes-3.npz")[0])
+    assert all(len(torch.from_numpy(archive[name])) == len(archive[name]) for name in archive)
+except ImportError:
+    print("no torch is installed: not tried")
 END
 python loading.py || fail "the code of docs/datasets.md"
 [ -e whole/unfinished ] && fail "whole/unfinished is left"
@@ -62,11 +70,43 @@ python - <<'END' || fail "the recorded command makes another fracture"
 import json, pathlib, subprocess, numpy as np
 record = next(pathlib.Path("whole").glob("*/apple-voronoi-3.json"))
 entry, z = json.loads(record.read_text())["fractures"][1], np.load(record.with_suffix(".npz"))
-subprocess.run(entry["command"], shell=True, check=True)
+subprocess.run(entry["command"].replace("-o broken.ply", "-o ../broken.ply"), shell=True, check=True, cwd="whole")
 subprocess.run("kerf-pieces broken.ply -o pieces", shell=True, check=True)
 made = [p["volume"] for p in json.load(open("pieces/pieces.json"))["pieces"]]
 assert np.allclose(made, z["piece_volume"][z["fracture_pieces"][1]:], rtol=1e-12), made
 END
+
+# A repaired model: the intact one is the one that was broken; command and sources are of it.
+kerf-repair -q apple.ply -o apple.obj && head -n -7 apple.obj >"a b's.obj" || fail "a model with a hole"
+expect 1 "no fracture could be made" kerf-dataset -q "a b's.obj" --seeds 2 --pieces 3 -o refused
+kerf-dataset -q "a b's.obj" --seeds 2 --pieces 3 --repair -o repaired || fail "--repair"
+python - <<'END' || fail "--repair: command or sources"
+import json, pathlib, subprocess, numpy as np
+record = next(pathlib.Path("repaired").glob("train/*.json"))
+entry, z = json.loads(record.read_text())["fractures"][1], np.load(record.with_suffix(".npz"))
+subprocess.run(entry["command"], shell=True, check=True, cwd="repaired")
+told = subprocess.run(["kerf-info", "--json", "repaired/models/a b's.ply"], check=True, capture_output=True, text=True).stdout
+assert -1 in z["face_source"] and z["face_source"].max() == json.loads(told)["faces"] - 1, z["face_source"].max()
+END
+
+# A shard in which all failed is an archive without rows, which no list names.
+python - <<'END' || fail "a shard in which all failed"
+import pathlib, numpy as np
+archive = np.load(next(pathlib.Path("refused").glob("*/*.npz")))
+assert all(len(archive[name]) == name.startswith(("fracture_", "piece_vertices", "piece_faces", "bond_walls")) for name in archive), dict(archive)
+assert not any(path.read_text() for path in pathlib.Path("refused/data_split").iterdir())
+END
+
+# No set with a share is empty as long as there are models; one that is empty is told.
+for name in a b c d; do cp apple.ply $name.ply; done
+for models in "a.ply b.ply c.ply" "b.ply c.ply d.ply" "d.ply c.ply a.ply b.ply"; do
+  rm -rf sets && kerf-dataset -q $models --seeds 1 --pieces 2 -o sets || fail "$models"
+  for set in train val test; do [ -s sets/data_split/shapes.$set.txt ] || fail "$models: $set is empty"; done
+done
+for name in a b c d; do
+  rm -rf sets && kerf-dataset $name.ply --seeds 1 --pieces 2 -o sets 2>said.txt && [ -s sets/data_split/shapes.train.txt ] || fail "$name: train is empty"
+  grep -q "shapes.val.txt is empty" said.txt && grep -q "shapes.test.txt is empty" said.txt || fail "empty sets are not told: $(cat said.txt)"
+done
 
 # Rotated pieces, single precision; folders of PLY files.
 kerf-dataset apple.ply block.ply --seeds 3 --pieces 4 --rotate --single -o posed && python "$here/check_dataset.py" posed "$volumes" || fail "--rotate --single"
@@ -76,6 +116,7 @@ printf 'v 691234 5401234 0\nv 691235 5401234 0\nv 691234 5401235 0\nv 691234 540
 kerf-dataset far.obj --seeds 1 --pieces 2 --single -o far || fail "a model far from the origin"
 python -c 'import glob, numpy as np; assert np.load(glob.glob("far/*/far-*.npz")[0])["vertices"].dtype == np.float64' || fail "--single far from the origin"
 kerf-dataset apple.ply block.ply --patterns voronoi,bricks --seeds 2 --pieces 4 --layout folders --split 50,0,50 -o folders && python "$here/check_dataset.py" folders "$volumes" || fail "--layout folders"
+kerf-info --check -q folders/shapes/apple/intact.ply || fail "the intact model"
 [ "$(cat folders/data_split/shapes.{train,val,test}.txt | sort)" = "$(printf 'shapes/apple\nshapes/block')" ] || fail "data_split"
 kerf-info --check -q folders/shapes/apple/fractured_3/piece_0.ply || fail "a piece"
 cp -r folders again && rm again/shapes/block/labels_1.json again/summary.json

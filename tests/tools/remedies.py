@@ -318,6 +318,18 @@ def touching_bodies():
     run("kerf-info --check s.toml")
 
 
+# ---- Data sets
+
+
+@case("give more, or another --split")
+def empty_sets():
+    run("kerf-model apple --frequency 3 -o a.ply && cp a.ply b.ply && cp a.ply c.ply")
+    told = "test.txt is empty: .*give more, or another --split"
+    said("kerf-dataset a.ply b.ply --seeds 1 --pieces 2 -o few", told, 0)
+    for remedy in ("a.ply b.ply c.ply", "a.ply b.ply --split 50,50,0"):
+        assert "empty" not in run(f"rm -rf made && kerf-dataset {remedy} --seeds 1 --pieces 2 -o made")[1]
+
+
 # ---- The module
 
 

@@ -36,8 +36,9 @@ Model read_model(const std::string& path, const std::string& name, bool repair, 
   tool::require_whole(file.mesh, path, "give the model before the cut");
   file.mesh.attributes = {};
   file.mesh.source.clear();
-  Model model{name, tool::complex_of(file, path), 0};
+  Model model{name, {}, tool::complex_of(file, path), 0};
   model.volume = geo::signed_volume(file.mesh);
+  model.mesh = std::move(file.mesh);
   return model;
 }
 
@@ -100,14 +101,36 @@ void measure_and_check(Fracture& fracture, double volume) {
     throw geo::GeometryError("volumes of pieces sum to " + tool::number(sum) + ", not to " + tool::number(volume));
 }
 
+// The faces on both sides of each wall, in the order of the complex. Faces of pieces are in that
+// order, too.
+std::vector<std::vector<WallFaces>> walls_of(const geo::Complex& complex, const geo::Pieces& found,
+                                             const Labels& labels) {
+  std::vector<std::vector<WallFaces>> walls(labels.size());
+  std::vector<std::uint32_t> rows(found.count);  // faces of each piece so far
+  for (std::uint32_t f = 0; f < complex.face_count(); ++f) {
+    const std::int32_t front = found.of_side[2 * f];
+    const std::int32_t back = found.of_side[2 * f + 1];
+    const std::uint32_t front_row = front < 0 ? 0 : rows[static_cast<std::size_t>(front)]++;
+    const std::uint32_t back_row = back < 0 ? 0 : rows[static_cast<std::size_t>(back)]++;
+    if (front < 0 || back < 0 || complex.face(geo::FaceId(f)).crack == 0) continue;
+    const auto a = static_cast<std::uint32_t>(std::min(front, back));
+    const auto b = static_cast<std::uint32_t>(std::max(front, back));
+    const auto label = static_cast<std::size_t>(labels.at({a, b}));
+    walls[label - 1].push_back(front < back ? WallFaces{front_row, back_row} : WallFaces{back_row, front_row});
+  }
+  return walls;
+}
+
 }  // namespace
 
 Fracture break_model(const Model& model, const Recipe& recipe) {
   geo::Complex cut;
   const geo::Score score = geo::make_score(model.complex, score_options(recipe), {}, &cut);
   const geo::Pieces found = geo::find_pieces(cut);
-  Fracture fracture{recipe, {}, geo::find_bonds(cut, found)};
-  fracture.pieces = pieces_of(cut, found, labels_of(fracture.bonds));
+  Fracture fracture{recipe, {}, geo::find_bonds(cut, found), {}};
+  const Labels labels = labels_of(fracture.bonds);
+  fracture.pieces = pieces_of(cut, found, labels);
+  fracture.walls = walls_of(cut, found, labels);
   measure_and_check(fracture, model.volume);
   return fracture;
 }

@@ -16,6 +16,7 @@ namespace dataset {
 /// A model that was read, checked and indexed: the start of all its fractures.
 struct Model {
   std::string name;
+  geo::TriangleMesh mesh;
   geo::Complex complex;
   double volume = 0;
 };
@@ -34,10 +35,15 @@ struct Piece {
   geo::Vec3 translation = geo::Vec3::Zero();
 };
 
+/// The two sides of a triangle of a wall: its row among the faces of the bond's first piece, and of
+/// the second. Corners 0, 1, 2 of one are at the places of corners 0, 2, 1 of the other.
+using WallFaces = std::array<std::uint32_t, 2>;
+
 struct Fracture {
   Recipe recipe;
-  std::vector<Piece> pieces;     ///< in descending order of volume
-  std::vector<geo::Bond> bonds;  ///< ordered by their pieces
+  std::vector<Piece> pieces;                  ///< in descending order of volume
+  std::vector<geo::Bond> bonds;               ///< ordered by their pieces
+  std::vector<std::vector<WallFaces>> walls;  ///< per bond: all triangles of its wall
 };
 
 /// Reads a model and makes its complex; `say` takes what a repair decided about shells. Throws

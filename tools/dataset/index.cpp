@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 std::string text_of(const std::vector<ModelFile>& models, const Settings& s) {
-  Json text{{"format", 1}, {"patterns", Json::array()}};
+  Json text{{"format", 2}, {"patterns", Json::array()}};
   for (const auto pattern : s.patterns) text["patterns"].push_back(geo::pattern_names[std::size_t(pattern)]);
   text["seed"] = s.first_seed, text["seeds"] = s.seeds;
   text["pieces"] = {s.pieces.low, s.pieces.high}, text["jagged"] = {s.jagged.low, s.jagged.high};
@@ -24,8 +24,9 @@ std::string text_of(const std::vector<ModelFile>& models, const Settings& s) {
   text["layout"] = s.folders ? "folders" : "npz";
   if (!s.folders) text["per_shard"] = s.per_shard;
   text["split"] = s.split, text["models"] = Json::array();
-  for (const auto& [name, path] : models)
-    text["models"].push_back({{"name", name}, {"set", set_names[set_of(s, name)]}});
+  const std::vector<std::size_t> sets = sets_of(models, s);
+  for (std::size_t m = 0; m < models.size(); ++m)
+    text["models"].push_back({{"name", models[m].name}, {"set", set_names[sets[m]]}});
   return text.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -38,7 +39,8 @@ struct Sum {
   std::size_t fractures = 0, pieces = 0, faces = 0, failed = 0;
   std::string failures;
 
-  void add(const std::string& path, const Shard& shard) {
+  // Returns the number of fractures in the record at `path`.
+  std::size_t add(const std::string& path, const Shard& shard) {
     try {
       const auto record = Json::parse(geo::read_all(path));
       for (const auto& entry : record.at("fractures")) {
@@ -55,6 +57,7 @@ struct Sum {
         for (const auto& entry : record.at("failed"))
           failures += name + "\t" + std::to_string(entry.at("seed").get<std::uint64_t>()) + "\t" +
                       entry.at("why").get<std::string>() + "\n";
+      return record.at("fractures").size();
     } catch (const Json::exception&) {
       throw geo::InputError(path + ": is no record of a shard; remove it, and what it stands for is made anew");
     }
@@ -81,18 +84,25 @@ void begin_folder(const std::string& folder, const std::vector<ModelFile>& model
 }
 
 bool finish_folder(const std::string& folder, const std::vector<ModelFile>& models, const Settings& settings,
-                   const std::vector<Shard>& shards) {
+                   const std::vector<Shard>& shards, std::vector<std::string>& notes) {
   const auto at = [&](const std::string& path) { return folder + "/" + path; };
   for (const auto& shard : shards)
     if (!fs::exists(at(shard.record))) return false;
   Sum sum;
   std::array<std::string, 3> lists;
+  std::size_t listed = models.size();  // the last model that is in a list
   for (const auto& shard : shards) {
-    sum.add(at(shard.record), shard);
-    if (!settings.folders) lists[set_of(settings, models[shard.model].name)] += shard.data + "\n";
+    if (sum.add(at(shard.record), shard) == 0) continue;
+    if (!settings.folders)
+      lists[shard.set] += shard.data + "\n";
+    else if (listed != shard.model)
+      lists[shard.set] += "shapes/" + models[shard.model].name + "\n";
+    listed = shard.model;
   }
-  if (settings.folders)
-    for (const auto& model : models) lists[set_of(settings, model.name)] += "shapes/" + model.name + "\n";
+  for (std::size_t set = 0; set < set_names.size(); ++set)
+    if (settings.split[set] > 0 && lists[set].empty())
+      notes.push_back(std::string("data_split/shapes.") + set_names[set] +
+                      ".txt is empty: too few models could be broken; give more, or another --split");
   fs::create_directories(at("data_split"));
   for (std::size_t set = 0; set < set_names.size(); ++set)
     write_text(at(std::string("data_split/shapes.") + set_names[set] + ".txt"), lists[set]);

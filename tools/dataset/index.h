@@ -14,8 +14,9 @@ void begin_folder(const std::string& folder, const std::vector<ModelFile>& model
 
 /// False where a shard's record is missing. Else writes the lists of shards or models for each set,
 /// failed.txt and summary.json from the records, removes what interrupted runs left, and returns
-/// true. Throws InputError for a record that is damaged.
+/// true. Shards and models without a fracture are in no list; `notes` gets a line for each set that
+/// is empty. Throws InputError for a record that is damaged.
 bool finish_folder(const std::string& folder, const std::vector<ModelFile>& models, const Settings& settings,
-                   const std::vector<Shard>& shards);
+                   const std::vector<Shard>& shards, std::vector<std::string>& notes);
 
 }  // namespace dataset

@@ -46,7 +46,8 @@ void NpzWriter::add(const std::string& name, const std::string& type, const std:
   const std::uint64_t size = header.size() + bytes.size();
   if (size >= 0xff000000u) throw std::length_error("an array of a shard has more than 4 GB; give less --per-shard");
   auto crc = crc32_z(0, reinterpret_cast<const Bytef*>(header.data()), header.size());
-  crc = crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  // With a null pointer, crc32_z() returns its initial value, not the sum so far.
+  if (!bytes.empty()) crc = crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   const std::string packed = deflated(header, bytes);
 
   // From "version needed" to "extra length"; sizes and place are in a 64-bit extra field of the

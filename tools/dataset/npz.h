@@ -17,11 +17,7 @@ inline constexpr const char* npy_type<double> = "<f8";
 template <>
 inline constexpr const char* npy_type<float> = "<f4";
 template <>
-inline constexpr const char* npy_type<std::uint64_t> = "<u8";
-template <>
 inline constexpr const char* npy_type<std::int64_t> = "<i8";
-template <>
-inline constexpr const char* npy_type<std::uint32_t> = "<u4";
 template <>
 inline constexpr const char* npy_type<std::int32_t> = "<i4";
 

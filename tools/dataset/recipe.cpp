@@ -1,9 +1,11 @@
 // Random numbers are those of SplitMix64 (Steele, Lea, Flood 2014), a generator for each purpose.
 #include "dataset/recipe.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 
-#include <kerf/files.h>
 #include "tool.h"
 
 namespace dataset {
@@ -25,6 +27,15 @@ class Generator {
  private:
   std::uint64_t state_;
 };
+
+// A file's name as a word of a shell's command.
+std::string quoted_for_shell(const std::string& name) {
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("._-/+,@", c); };
+  if (std::all_of(name.begin(), name.end(), is_plain)) return name;
+  std::string quoted = "'";
+  for (const char c : name) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 constexpr std::uint64_t drawing = 1, turning = 2;  // purposes; pieces count up from the second
 
@@ -50,10 +61,11 @@ geo::ScoreOptions score_options(const Recipe& r) {
 }
 
 std::string command_of(const Recipe& r, const std::string& model) {
-  return "kerf-score " + model + " --pattern " + geo::pattern_names[static_cast<std::size_t>(r.pattern)] +
+  const std::string quoted = quoted_for_shell(model);
+  return "kerf-score " + quoted + " --pattern " + geo::pattern_names[static_cast<std::size_t>(r.pattern)] +
          " --pieces " + std::to_string(r.pieces) + " --jagged " + tool::number(r.jagged) + " --bumps " +
          tool::number(r.bumps) + " --attempts " + std::to_string(r.attempts) + " --seed " + std::to_string(r.seed) +
-         " | kerf-crack " + model + " --front - -o broken.ply";
+         " | kerf-crack " + quoted + " --front - -o broken.ply";
 }
 
 std::array<double, 4> random_rotation(std::uint64_t seed, std::uint32_t piece) {
@@ -62,11 +74,6 @@ std::array<double, 4> random_rotation(std::uint64_t seed, std::uint32_t piece) {
   const double u = random.uniform(), a = turn * random.uniform(), b = turn * random.uniform();
   const double r = std::sqrt(1 - u), s = std::sqrt(u);
   return {s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b)};
-}
-
-std::size_t set_of(const Settings& settings, const std::string& model) {
-  const auto share = static_cast<int>(geo::fingerprint(model) % 100);
-  return share < settings.split[0] ? 0 : share < settings.split[0] + settings.split[1] ? 1 : 2;
 }
 
 }  // namespace dataset

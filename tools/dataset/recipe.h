@@ -19,7 +19,7 @@ struct Settings {
   std::vector<geo::Pattern> patterns;
   std::uint64_t first_seed = 1;
   int seeds = 100;  ///< fractures for each model and pattern
-  Range pieces{20, 20}, jagged{0.01, 0.01};
+  Range pieces{20, 20}, jagged{0, 0};
   double bumps = 4;                      ///< see geo::JaggedOptions::frequency
   int attempts = 10;                     ///< see geo::ScoreOptions
   bool rotate = false;                   ///< each piece about its centroid, at random
@@ -45,17 +45,11 @@ Recipe recipe_of(const Settings& settings, geo::Pattern pattern, std::uint64_t s
 /// Options of kerf-score for a recipe.
 geo::ScoreOptions score_options(const Recipe& recipe);
 
-/// The commands that make the same cut surface from a model's file.
+/// The commands that make the same cut surface from a model's file, for a shell.
 std::string command_of(const Recipe& recipe, const std::string& model);
 
 /// A rotation drawn uniformly (Shoemake 1992), the same for each seed and piece: a unit quaternion
 /// w, x, y, z.
 std::array<double, 4> random_rotation(std::uint64_t seed, std::uint32_t piece);
-
-/// The set that a model's name belongs to, by its hash: 0 training, 1 validation, 2 test.
-std::size_t set_of(const Settings& settings, const std::string& model);
-
-/// Names of the sets.
-inline constexpr std::array set_names{"train", "val", "test"};
 
 }  // namespace dataset

@@ -76,6 +76,7 @@ class Making {
       if (refused.starts_with(file.path + ": ")) refused.erase(0, file.path.size() + 2);
       ++totals_.refused_models;
     }
+    if (refused.empty()) write_intact_model(model, rows.front());
     for (std::size_t begin = 0; begin < rows.size();) {
       std::size_t end = begin;
       int fractures = 0;
@@ -84,6 +85,16 @@ class Making {
       make_batch(model, refused, {rows.begin() + std::ptrdiff_t(begin), rows.begin() + std::ptrdiff_t(end)});
       begin = end;
     }
+  }
+
+  // Before the first shard of it: what is in a shard has its model.
+  void write_intact_model(const Model& model, std::size_t row) {
+    const std::string path = intact_path(models_[shards_[row].model], settings_);
+    if (fs::exists(at(path))) return;
+    fs::create_directories(fs::path(at(path)).parent_path());
+    geo::TemporaryOutput output(unfinished(row));
+    geo::write_all(unfinished(row), [&](std::ostream& out) { write_intact(out, model); });
+    put(output, path);
   }
 
   void make_batch(const Model& model, const std::string& refused, const std::vector<std::size_t>& rows) {
@@ -134,8 +145,11 @@ class Making {
       fs::remove_all(at(shard.data));  // of a run that ended before its record was written
       put(data, shard.data);
     }
-    const RecordOf of{file.name, set_names[set_of(settings_, file.name)], fs::path(file.path).filename().string(),
-                      refused, settings_.folders};
+    const RecordOf of{.model = file.name,
+                      .set = set_names[shard.set],
+                      .file = intact_path(file, settings_),
+                      .refused = refused,
+                      .details = settings_.folders};
     geo::TemporaryOutput record(unfinished(row) + ".json");
     geo::write_all(unfinished(row) + ".json", [&](std::ostream& out) { write_record(out, shard, outcomes, of); });
     put(record, shard.record);
@@ -172,7 +186,7 @@ Totals run(const std::string& folder, const std::vector<ModelFile>& models, cons
     begin_folder(folder, models, settings);
     const auto shards = plan(models, settings);
     Totals totals = Making(folder, models, settings, shards, progress).run(part);
-    totals.complete = finish_folder(folder, models, settings, shards);
+    totals.complete = finish_folder(folder, models, settings, shards, totals.notes);
     totals.seconds = watch.lap(), totals.cpu_seconds = cpu_now() - cpu;
     return totals;
   } catch (const fs::filesystem_error& e) {

@@ -18,7 +18,7 @@ struct Totals {
   std::size_t refused_models = 0;
   std::size_t bytes = 0;  ///< written, records included
   double seconds = 0, cpu_seconds = 0;
-  std::vector<std::string> notes;  ///< what repair decided about shells, a line for each model
+  std::vector<std::string> notes;  ///< what repair decided about shells, sets that are empty
   bool complete = false;           ///< no shard of the whole data set is missing
 };
 

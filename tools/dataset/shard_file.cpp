@@ -1,6 +1,7 @@
 // Arrays are concatenated over the fractures of a shard, in order of seeds; offsets divide them.
 #include "dataset/shard_file.h"
 
+#include <array>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -15,28 +16,37 @@ using Json = nlohmann::ordered_json;
 
 void append(std::vector<double>& to, const geo::Vec3& v) { to.insert(to.end(), {v.x(), v.y(), v.z()}); }
 
+// Indices as signed ones; no index, ~0u, becomes -1.
+template <class Indices>
+void append(std::vector<std::int32_t>& to, const Indices& indices) {
+  for (const std::uint32_t i : indices) to.push_back(static_cast<std::int32_t>(i));
+}
+
 // The arrays of an archive.
 struct Arrays {
-  std::vector<std::uint64_t> seed;
-  // Signed, as NumPy's own indices are.
-  std::vector<std::int64_t> fracture_pieces{0}, fracture_bonds{0}, piece_vertices{0}, piece_faces{0};
+  // Signed, as torch has no unsigned integers of these sizes.
+  std::vector<std::int64_t> seed, fracture_pieces{0}, fracture_bonds{0}, piece_vertices{0}, piece_faces{0};
+  std::vector<std::int64_t> bond_walls{0};
   std::vector<double> jagged, volume, centroid, rotation, translation, vertices, area, normal, bond_centroid;
-  std::vector<std::uint32_t> faces, source, bond;
-  std::vector<std::int32_t> label;
+  std::vector<std::int32_t> faces, source, bond, label, wall_faces;
 
   void add(const Fracture& fracture) {
-    seed.push_back(fracture.recipe.seed), jagged.push_back(fracture.recipe.jagged);
+    seed.push_back(static_cast<std::int64_t>(fracture.recipe.seed));
+    jagged.push_back(fracture.recipe.jagged);
     for (const Piece& p : fracture.pieces) {
       for (const auto& v : p.vertices) append(vertices, v);
-      for (const auto& t : p.faces) faces.insert(faces.end(), t.begin(), t.end());
+      for (const auto& t : p.faces) append(faces, t);
       label.insert(label.end(), p.label.begin(), p.label.end());
-      source.insert(source.end(), p.source.begin(), p.source.end());
+      append(source, p.source);
       piece_vertices.push_back(std::ssize(vertices) / 3), piece_faces.push_back(std::ssize(label));
       volume.push_back(p.volume), append(centroid, p.centroid), append(translation, p.translation);
       rotation.insert(rotation.end(), p.rotation.begin(), p.rotation.end());
     }
-    for (const auto& b : fracture.bonds) {
-      bond.insert(bond.end(), {b.a, b.b});
+    for (std::size_t k = 0; k < fracture.bonds.size(); ++k) {
+      const geo::Bond& b = fracture.bonds[k];
+      append(bond, std::array{b.a, b.b});
+      for (const auto& pair : fracture.walls[k]) append(wall_faces, pair);
+      bond_walls.push_back(std::ssize(wall_faces) / 2);
       area.push_back(b.area), append(normal, b.normal), append(bond_centroid, b.centroid);
     }
     fracture_pieces.push_back(std::ssize(volume)), fracture_bonds.push_back(std::ssize(area));
@@ -62,7 +72,8 @@ void add_details(Json& entry, const Fracture& fracture, const std::string& folde
                              {"b", b.b},
                              {"area", b.area},
                              {"normal", list(b.normal)},
-                             {"centroid", list(b.centroid)}});
+                             {"centroid", list(b.centroid)},
+                             {"wall_faces", fracture.walls[k]}});
   }
 }
 
@@ -95,8 +106,11 @@ void write_archive(std::ostream& out, const std::vector<Outcome>& outcomes, bool
   add("faces", a.faces, 3), add("face_label", a.label), add("face_source", a.source);
   add("bond_pieces", a.bond, 2), add("bond_area", a.area);
   add("bond_normal", a.normal, 3), add("bond_centroid", a.bond_centroid, 3);
+  add("bond_walls", a.bond_walls), add("wall_faces", a.wall_faces, 2);
   npz.finish();
 }
+
+void write_intact(std::ostream& out, const Model& model) { geo::write_ply(out, model.mesh, {}, "kerf-dataset"); }
 
 void write_folder(const std::string& folder, const Fracture& fracture) {
   std::vector<std::string> paths;

@@ -23,6 +23,10 @@ struct Outcome {
 /// `single`: vertices in single precision, unless the model is too far from the origin for that.
 void write_archive(std::ostream& out, const std::vector<Outcome>& outcomes, bool single);
 
+/// Writes a model as the fractures are of, repaired where it was, as PLY. Its triangles are those
+/// that sources of faces name.
+void write_intact(std::ostream& out, const Model& model);
+
 /// Writes the pieces of a fracture as piece_0.ply, piece_1.ply … into a folder that exists. The
 /// property `patch` of faces is the label, `source` the source. Throws OutputError.
 void write_folder(const std::string& folder, const Fracture& fracture);
@@ -30,7 +34,7 @@ void write_folder(const std::string& folder, const Fracture& fracture);
 /// Names in a record.
 struct RecordOf {
   std::string model, set;
-  std::string file;      ///< the model's, for commands
+  std::string file;      ///< the intact model's in the data set, for commands
   std::string refused;   ///< why the model cannot be used, or empty
   bool details = false;  ///< also pieces and bonds
 };

@@ -19,6 +19,7 @@
 #include "kerf/check.h"
 #include "kerf/complex.h"
 #include "kerf/mesh.h"
+#include "kerf/progress.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -177,9 +178,10 @@ struct RemeshStats {
 /// flips, collapses, moves and divisions. Kept are the skin's surface, the lines where cracks meet
 /// each other and the skin, crack tips, creases, and the contacts of `fronts`. A contact merged
 /// with its neighbour is removed from its front. Cost follows the region. Returns all changes.
-/// Throws InputError for options out of range.
+/// Throws InputError for options out of range,
+/// Interrupted: the complex is then as before.
 CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<FrontState* const> fronts,
-                  const RemeshOptions& options = {}, RemeshStats* stats = nullptr);
+                  const RemeshOptions& options = {}, RemeshStats* stats = nullptr, const Progress& progress = {});
 
 /// The smallest angle of a triangle, in degrees.
 double smallest_angle(const std::array<Vec3, 3>& corners);
@@ -208,9 +210,10 @@ struct RoughenStats {
 /// fractal noise. The noise fades towards the skin, other cracks and the tips, which stay. Both
 /// sides of a crack stay alike and the volumes of the pieces keep their sum. A vertex moves less
 /// where it would make faces cross. Contacts of `fronts` stay. Returns all changes. Throws
-/// InputError for options out of range.
+/// InputError for options out of range,
+/// Interrupted: the complex is then as before.
 CrackDelta roughen(Complex& complex, std::span<FrontState* const> fronts, const RoughenOptions& options = {},
-                   RoughenStats* stats = nullptr);
+                   RoughenStats* stats = nullptr, const Progress& progress = {});
 
 // ---- Decimation: fewer faces for interactive use
 
@@ -230,8 +233,9 @@ struct DecimateStats {
 /// Collapses edges of skin and cracks, the shortest first. Lines where surfaces meet, tips and
 /// creases stay lines; contacts of `fronts` stay, or are omitted between their neighbours. Volumes
 /// change within the deviation. Cost follows the whole complex. Returns all changes. Throws
-/// InputError for options out of range.
+/// InputError for options out of range,
+/// Interrupted: the complex is then as before.
 CrackDelta decimate(Complex& complex, std::span<FrontState* const> fronts, const DecimateOptions& options = {},
-                    DecimateStats* stats = nullptr);
+                    DecimateStats* stats = nullptr, const Progress& progress = {});
 
 }  // namespace geo

@@ -17,6 +17,7 @@
 #include "kerf/crack.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
+#include "kerf/progress.h"
 #include "kerf/scene.h"
 
 namespace geo {
@@ -156,8 +157,9 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options =
 /// distance field, with voxels of edge `voxel`, which also rounds edges by that length. A sheet
 /// becomes a plate of the thickness `voxel`. So does a closed part whose mean thickness is less, in
 /// addition to its own. `source` is the nearest triangle of `mesh`, which also gives the
-/// attributes. Throws InputError where nothing has an extent.
-TriangleMesh wrapped(const TriangleMesh& mesh, double voxel, OpenParts open = OpenParts::by_area);
+/// attributes. Throws InputError where nothing has an extent, Interrupted.
+TriangleMesh wrapped(const TriangleMesh& mesh, double voxel, OpenParts open = OpenParts::by_area,
+                     const Progress& progress = {});
 
 /// The changes that wrapped_solid() made.
 struct WrapStats {
@@ -167,9 +169,10 @@ struct WrapStats {
 
 /// A valid model around a plain mesh: take_sheets(), then repair() of the other parts, then
 /// wrapped(). Throws InputError where no triangle bounds anything, and where the new surface is no
-/// valid model.
+/// valid model, Interrupted.
 TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions& options = {},
-                           OpenParts open = OpenParts::by_area, WrapStats* stats = nullptr);
+                           OpenParts open = OpenParts::by_area, WrapStats* stats = nullptr,
+                           const Progress& progress = {});
 
 /// Writes a mesh as a level set with voxels of edge `voxel`; with `fog` as a density from 0 outside
 /// to 1 inside. For samples and tests. Throws OutputError.

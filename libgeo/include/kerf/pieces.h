@@ -8,6 +8,7 @@
 
 #include "kerf/complex.h"
 #include "kerf/mesh.h"
+#include "kerf/progress.h"
 
 namespace geo {
 
@@ -78,8 +79,8 @@ MassProperties mass_properties(const TriangleMesh& mesh);
 /// `max_vertices` vertices each. Planes across principal axes divide the mesh greedily; each
 /// division saves the most hull volume (after Mamou and Ghorbel 2009). It ends when the saving is
 /// at most a hundredth of the whole hull's volume. Hulls with no limit on vertices cover the mesh.
-/// Empty for a planar mesh.
+/// Empty for a planar mesh. Throws Interrupted.
 std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t max_hulls,
-                                               std::size_t max_vertices);
+                                               std::size_t max_vertices, const Progress& progress = {});
 
 }  // namespace geo

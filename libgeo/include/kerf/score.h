@@ -44,10 +44,10 @@ struct PatternOptions {
 
 /// Fractal displacement of walls. Lengths are relative to the diagonal of the model's box.
 struct JaggedOptions {
-  double amplitude = 0.02;  ///< of the largest bumps; 0: flat walls
-  double frequency = 8;     ///< of the largest bumps, per diagonal
-  int octaves = 3;          ///< each twice as fine and 0.6 times as high
-  double edge = 0;          ///< longest edge; 0: 1 / (8 · frequency)
+  double amplitude = 0;  ///< of the largest bumps; 0: flat walls
+  double frequency = 8;  ///< of the largest bumps, per diagonal
+  int octaves = 3;       ///< each twice as fine and 0.6 times as high
+  double edge = 0;       ///< longest edge; 0: 1 / (8 · frequency)
   std::uint64_t seed = 1;
 };
 

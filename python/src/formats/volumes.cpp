@@ -1,7 +1,9 @@
 // OpenVDB volumes as surfaces and back, and the wrapping of surfaces.
+#include "../apart.h"
 #include "../arguments.h"
 #include "../busy.h"
 #include "../mesh.h"
+#include "../progress.h"
 #include "formats.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
@@ -39,17 +41,26 @@ void require_voxel(const geo::TriangleMesh& mesh, double voxel) {
                           " to " + std::to_string(0.1 * diagonal));
 }
 
-std::shared_ptr<Mesh> wrapped(const std::shared_ptr<Mesh>& mesh, double voxel) {
+std::shared_ptr<Mesh> wrapped(const std::shared_ptr<Mesh>& mesh, double voxel, py::object progress) {
   require_voxel(mesh->mesh, voxel);
-  return without_gil([&] { return std::make_shared<Mesh>(geo::wrapped(mesh->mesh, voxel)); });
+  ProgressReport report(std::move(progress));
+  return report.run([&](const geo::Progress& progress) {
+    return run_apart(progress, "wrap", [mesh, voxel](const geo::Progress& own) {
+      return std::make_shared<Mesh>(geo::wrapped(mesh->mesh, voxel, geo::OpenParts::by_area, own));
+    });
+  });
 }
 
 std::shared_ptr<Mesh> wrapped_solid(const std::shared_ptr<Mesh>& mesh, double voxel, double weld, bool smooth,
-                                    int inner, int open) {
+                                    int inner, int open, py::object progress) {
   require_voxel(mesh->mesh, voxel);
   const geo::RepairOptions options{weld, smooth, static_cast<geo::InnerShells>(inner)};
-  return without_gil([&] {
-    return std::make_shared<Mesh>(geo::wrapped_solid(mesh->mesh, voxel, options, static_cast<geo::OpenParts>(open)));
+  ProgressReport report(std::move(progress));
+  return report.run([&](const geo::Progress& progress) {
+    return run_apart(progress, "wrap", [mesh, voxel, options, open](const geo::Progress& own) {
+      return std::make_shared<Mesh>(
+          geo::wrapped_solid(mesh->mesh, voxel, options, static_cast<geo::OpenParts>(open), nullptr, own));
+    });
   });
 }
 
@@ -62,9 +73,9 @@ void write_level_set(const Path& path, const std::shared_ptr<Mesh>& mesh, double
 
 void bind_volumes(py::module_& module) {
   module.def("read_volume", &read_volume, py::arg("path"), py::arg("grid"), py::arg("iso"), py::arg("adaptivity"));
-  module.def("wrapped", &wrapped, py::arg("mesh"), py::arg("voxel"));
+  module.def("wrapped", &wrapped, py::arg("mesh"), py::arg("voxel"), py::arg("progress"));
   module.def("wrapped_solid", &wrapped_solid, py::arg("mesh"), py::arg("voxel"), py::arg("weld"), py::arg("smooth"),
-             py::arg("inner"), py::arg("open"));
+             py::arg("inner"), py::arg("open"), py::arg("progress"));
   module.def("write_level_set", &write_level_set, py::arg("path"), py::arg("mesh"), py::arg("voxel"), py::arg("fog"));
 }
 

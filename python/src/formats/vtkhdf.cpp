@@ -1,4 +1,5 @@
 // Graphs of bodies as VTKHDF. Body.save_graph() loads the extension for them.
+#include "../gil.h"
 #include "formats.h"
 
 #include "../arguments.h"
@@ -12,7 +13,7 @@ namespace py = pybind11;
 
 void write_vtkhdf(kerf_python::Body& body, const kerf_python::Path& path) {
   const kerf_python::Reading reading(body.busy);
-  py::gil_scoped_release release;
+  const kerf_python::GilRelease release;
   geo::write_all(path, [&](std::ostream& out) { geo::write_vtkhdf(out, body.body); });
 }
 

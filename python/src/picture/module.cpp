@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "../arrays.h"
+#include "../gil.h"
 #include "../mesh.h"
 #include "../progress.h"
 #include "drawing.h"
@@ -82,4 +83,5 @@ PYBIND11_MODULE(_picture, module) {
              py::arg("look"), py::arg("view"), py::arg("progress"),
              "Draws meshes and nodes; see kerf/_pictures.py. Returns (h, w, 3) uint8.");
   module.def("png", &kerf_python::png, py::arg("pixels"), "A PNG of (h, w, 3) bytes, sRGB.");
+  kerf_python::stop_calls_at_exit();
 }

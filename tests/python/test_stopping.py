@@ -1,0 +1,114 @@
+"""Ctrl-C and progress stop calls that last, which leave everything as it was; threads that are in a call do not harm the exit."""
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import kerf
+import numpy as np
+
+LIMIT = 0.2  # s: from Ctrl-C to the end of the call
+
+
+def cut_model():
+    model = kerf.shapes.pumpkin(64)
+    return model.crack(kerf.score(model, pieces=20, seed=3))
+
+
+class Stopping(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.cut = cut_model()
+        cls.fine = kerf.shapes.pumpkin(160)
+        ball = kerf.shapes.sphere(90)
+        cls.twice = kerf.Mesh(np.r_[ball.vertices, ball.vertices + 0.3], np.r_[ball.faces, ball.faces.astype(np.int64) + len(ball.vertices)])
+        cls.dented = kerf.Mesh(*(lambda m: (m.vertices * (1 + 0.2 * np.sin(9 * m.vertices[:, :1])), m.faces))(kerf.shapes.sphere(100)))
+
+    def calls(self):
+        return {
+            "remesh": lambda **p: self.cut.remesh(angle=30, **p),
+            "roughen": lambda **p: self.cut.roughen(amplitude=0.01, frequency=60, **p),
+            "decimate": lambda **p: self.cut.decimate(deviation=0.01, **p),
+            "convex_decomposition": lambda **p: self.dented.convex_decomposition(60, **p),
+            "wrap": lambda **p: self.fine.wrap(0.0012 * np.linalg.norm(np.ptp(self.fine.bounds, axis=0)), **p),
+            "united": lambda **p: kerf.Solid.repaired(self.twice, **p),
+            "repaired": lambda **p: kerf.Solid.repaired(self.fine, voxel=0.0012 * np.linalg.norm(np.ptp(self.fine.bounds, axis=0)), **p),
+        }
+
+    def state(self):
+        return self.cut.points.tobytes(), self.cut.faces.tobytes(), self.cut.alive.tobytes()
+
+    def seconds_to_stop(self, call, pause):
+        """Seconds from a Ctrl-C, `pause` seconds after the start, to the KeyboardInterrupt."""
+        at = []
+
+        def press():
+            at.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        timer = threading.Timer(pause, press)
+        timer.start()
+        try:
+            call()
+        except KeyboardInterrupt:
+            return time.monotonic() - at[0]
+        finally:
+            timer.join()
+        self.fail("the call has ended before it could be stopped")
+
+    def test_control_c(self):
+        for name, call in self.calls().items():
+            with self.subTest(name):
+                before = self.state()
+                for pause in (0.2, 0.5) + (1.5, 3) * (name in ("wrap", "repaired")):  # in their several phases
+                    # A machine with other work may be late: the best of three counts.
+                    for _ in range(3):
+                        seconds = self.seconds_to_stop(call, pause)
+                        if seconds < LIMIT:
+                            break
+                    print(f"{name}, after {pause} s: {1000 * seconds:.0f} ms")
+                    self.assertLess(seconds, LIMIT)
+                self.assertEqual(self.state(), before)
+        self.assertTrue(self.cut.check(self_intersections=False))
+
+    def test_progress(self):
+        for name, call in self.calls().items():
+            with self.subTest(name):
+                seen = []
+                with self.assertRaises(kerf.Interrupted):
+                    call(progress=lambda phase, done, total: seen.append((phase, done, total)) or len(seen) < 3)
+                self.assertTrue(all(isinstance(phase, str) and done <= total for phase, done, total in seen), seen)
+
+    def test_a_stopped_edit_can_be_made_anew(self):
+        models = [self.cut.copy(), self.cut.copy()]
+        with self.assertRaises(kerf.Interrupted):
+            models[0].decimate(lambda *_: False, deviation=1e-3)
+        for model in models:
+            model.decimate(deviation=1e-3, faces=80000)
+        np.testing.assert_array_equal(models[0].surface().vertices, models[1].surface().vertices)
+
+    def test_exit_with_daemon_threads(self):
+        code = """
+import sys, threading, time
+sys.path.insert(0, %r)
+import kerf
+import test_stopping as t
+t.Stopping.setUpClass()
+others = {"score": lambda: kerf.score(kerf.shapes.pumpkin(40), pieces=200, jagged=0.01),
+          "check": lambda: [kerf.shapes.pumpkin(100).check() for _ in range(100)]}
+call = (t.Stopping().calls() | others)[%r]
+threading.Thread(target=call, daemon=True).start()
+time.sleep(0.4)
+"""
+        here = os.path.dirname(os.path.abspath(__file__))
+        for name in ("score", "check", "remesh", "decimate", "convex_decomposition", "wrap"):
+            with self.subTest(name):
+                done = subprocess.run([sys.executable, "-c", code % (here, name)], capture_output=True, text=True, timeout=120)
+                self.assertEqual(done.returncode, 0, done.stderr[-2000:])
+
+
+if __name__ == "__main__":
+    unittest.main()

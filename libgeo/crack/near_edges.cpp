@@ -17,8 +17,8 @@ namespace {
 // sheet is near all edges of that, and each division makes more of them.
 constexpr std::size_t most_places_per_triangle = 2;
 
-// Least distance of places, in reaches. Nearer ones would move the strip to and fro by
-// as much as it is long between them.
+// Least distance of places, in reaches. Nearer ones would move the strip to and fro by as much as
+// it is long between them.
 constexpr double places_apart = 3;
 
 // Coordinates order vertices: ids of a complex that was read back are others.
@@ -55,7 +55,7 @@ class NearEdges {
   NearEdges(const Complex& complex, const Strip& strip, double reach)
       : complex_(complex), strip_(strip), reach_(reach) {}
 
-  // Parameters of the places on each edge, ascending and farther apart than the reach.
+  // Parameters of the places on each edge, ascending.
   std::map<Edge, std::vector<double>> run() {
     for (std::size_t t = 0; t < strip_.triangles.size(); ++t) {
       const auto& p = strip_.triangles[t].p;

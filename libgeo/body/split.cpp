@@ -7,13 +7,14 @@
 #include <array>
 #include <chrono>
 #include <set>
+#include <utility>
 
 #include "body/binding.h"
 #include "body/connectivity.h"
+#include "body/crack_transaction.h"
 #include "body/front_guides.h"
 #include "body/incremental_cache.h"
 #include "body/locate.h"
-#include "body/veto.h"
 #include "graph/update.h"
 #include "kerf/parallel.h"
 
@@ -153,48 +154,61 @@ BodyDelta update_after_crack(Body& body, CrackDelta crack, ClosestVertices close
 
 }  // namespace
 
-BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
-                SplitStats* stats) {
-  return split(body, front, next, options, stats, StepVeto());
-}
-
-BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
-                SplitStats* stats, const StepVeto& veto) {
-  return finish_split(body, front, begin_split(body, front, next, options, stats), stats, veto);
-}
-
-BegunSplit begin_split(Body& body, const FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
-                       SplitStats* stats) {
+CrackTransaction::CrackTransaction(Body& body, const FrontState& front, std::span<const Vec3> next,
+                                   const CrackOptions& options, SplitStats* stats)
+    : body_(&body), front_(front), stats_(stats) {
   prepare_cache(body);
-  BegunSplit begun{front, {}};
-  begun.crack = advance(body.surface, begun.front, next, options, stats ? &stats->crack : nullptr);
-  return begun;
+  crack_ = advance(body.surface, front_, next, options, stats ? &stats->crack : nullptr);
 }
 
-void undo_split(Body& body, const BegunSplit& begun) {
-  if (!begun.crack.empty()) body.surface.undo();
+CrackTransaction::CrackTransaction(CrackTransaction&& other) noexcept
+    : body_(std::exchange(other.body_, nullptr)),
+      front_(std::move(other.front_)),
+      crack_(std::move(other.crack_)),
+      closest_(std::move(other.closest_)),
+      stats_(other.stats_) {}
+
+CrackTransaction& CrackTransaction::operator=(CrackTransaction&& other) noexcept {
+  if (this == &other) return *this;
+  roll_back();
+  body_ = std::exchange(other.body_, nullptr);
+  front_ = std::move(other.front_);
+  crack_ = std::move(other.crack_);
+  closest_ = std::move(other.closest_);
+  stats_ = other.stats_;
+  return *this;
 }
 
-BodyDelta finish_split(Body& body, FrontState& front, BegunSplit begun, SplitStats* stats, const StepVeto& veto) {
+CrackTransaction::~CrackTransaction() { roll_back(); }
+
+void CrackTransaction::roll_back() noexcept {
+  if (body_ && !crack_.empty()) body_->surface.undo();
+  body_ = nullptr;
+}
+
+void CrackTransaction::prepare() {
+  if (!closest_) closest_ = closest_after(*body_, crack_);
+}
+
+BodyDelta CrackTransaction::commit(FrontState& front, const StepVeto& veto) {
   auto clock = std::chrono::steady_clock::now();
   double veto_seconds = 0;
-  const auto find_closest = [&] {
-    if (!begun.closest) begun.closest = closest_after(body, begun.crack);
-  };
   const auto ask = [&] {
     auto own = std::chrono::steady_clock::now();
-    if (veto && !begun.crack.empty()) veto(body.surface, begun.crack);
+    if (veto && !crack_.empty()) veto(body_->surface, crack_);
     veto_seconds = seconds_since(own);
   };
-  try {
-    parallel_invoke(find_closest, ask);  // both read the body, and the veto decides whether it changes
-  } catch (...) {
-    undo_split(body, begun);
-    throw;
-  }
-  if (stats) stats->binding_seconds += std::max(0.0, seconds_since(clock) - veto_seconds);
-  front = std::move(begun.front);
-  return update_after_crack(body, std::move(begun.crack), std::move(*begun.closest), stats);
+  // Both read the body, and the veto decides whether it changes.
+  parallel_invoke([&] { prepare(); }, ask);
+  if (stats_) stats_->binding_seconds += std::max(0.0, seconds_since(clock) - veto_seconds);
+  Body& body = *std::exchange(body_, nullptr);
+  front = std::move(front_);
+  return update_after_crack(body, std::move(crack_), std::move(*closest_), stats_);
+}
+
+BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
+                SplitStats* stats) {
+  return CrackTransaction(body, front, next, options, stats).commit(front);
 }
 
 BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats, const Progress& progress) {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "body/veto.h"
+#include "body/crack_transaction.h"
 #include "contact/self_contact.h"
 #include "kerf/scene.h"
 

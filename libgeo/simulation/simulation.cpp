@@ -94,7 +94,7 @@ struct Simulation::Impl {
     double deviation = 0;         // see sheet_deviation()
     std::size_t retreating = 0;   // points of `to` that hold_retreating() held
     bool is_begun = false;
-    std::optional<BegunSplit> split;  // once begun; none: it is refused
+    std::optional<CrackTransaction> split;  // once begun; none: it is refused
   };
   // A cut by a blade: its runs in the material, and the advance of each.
   struct PlannedCut {
@@ -118,7 +118,6 @@ struct Simulation::Impl {
   void step(const TimeStep& step, FrameStats& stats);
   MovedBody moved_body(const TimeStep& step) const { return {body, solid, state.motion, way, step.begin, step.end}; }
   void begin_first_cut(const TimeStep& step, std::optional<FirstCut>& first, FrameStats& stats);
-  void undo(const std::optional<FirstCut>& first);
   void cut(const TimeStep& step, std::optional<FirstCut> first, FrameStats& stats);
   std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction,
                                                double before);
@@ -129,8 +128,8 @@ struct Simulation::Impl {
                      const FrontAnchor& anchor) const;
   void begin(Advance& advance, FrameStats& stats);
   std::optional<std::vector<FaceId>> split_step(FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
-  std::optional<BegunSplit> begin_step(const FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
-  std::optional<std::vector<FaceId>> finish_step(FrontState& front, BegunSplit begun, FrameStats& stats);
+  std::optional<CrackTransaction> begin_step(const FrontState& front, const std::vector<Vec3>& next, FrameStats& stats);
+  std::optional<std::vector<FaceId>> finish_step(FrontState& front, CrackTransaction step, FrameStats& stats);
   void apply_delta(const BodyDelta& delta, std::optional<EmbeddingPlan> plan, FrameStats& stats);
   void update_points();
   std::int32_t unused_crack() const;
@@ -240,18 +239,18 @@ void Simulation::Impl::update_points() {
 // One step of a crack. Returns its new faces; nothing, and counts it, where it cannot be made.
 std::optional<std::vector<FaceId>> Simulation::Impl::split_step(FrontState& front, const std::vector<Vec3>& next,
                                                                 FrameStats& stats) {
-  std::optional<BegunSplit> begun = begin_step(front, next, stats);
-  return begun ? finish_step(front, std::move(*begun), stats) : std::nullopt;
+  std::optional<CrackTransaction> step = begin_step(front, next, stats);
+  return step ? finish_step(front, std::move(*step), stats) : std::nullopt;
 }
 
-// The first part of split_step(): that of split().
-std::optional<BegunSplit> Simulation::Impl::begin_step(const FrontState& front, const std::vector<Vec3>& next,
-                                                       FrameStats& stats) {
+// The first part of split_step().
+std::optional<CrackTransaction> Simulation::Impl::begin_step(const FrontState& front, const std::vector<Vec3>& next,
+                                                             FrameStats& stats) {
   CrackOptions options;
   options.seed = scene.seed;
   options.snap_edges = snap_spacings * body.finest_spacing / body.surface.extent().diagonal();
   try {
-    return begin_split(body, front, next, options, &stats.split);
+    return CrackTransaction(body, front, next, options, &stats.split);
   } catch (const GeometryError&) {
     ++stats.refused;
     return {};
@@ -259,13 +258,13 @@ std::optional<BegunSplit> Simulation::Impl::begin_step(const FrontState& front, 
 }
 
 // The second part.
-std::optional<std::vector<FaceId>> Simulation::Impl::finish_step(FrontState& front, BegunSplit begun,
+std::optional<std::vector<FaceId>> Simulation::Impl::finish_step(FrontState& front, CrackTransaction step,
                                                                  FrameStats& stats) {
   try {
     std::optional<EmbeddingPlan> plan;
     const StepVeto check =
         collisions ? collisions->embedding_check(body, solid, state.motion, plan, stats.contact_seconds) : StepVeto();
-    const BodyDelta delta = finish_split(body, front, std::move(begun), &stats.split, check);
+    const BodyDelta delta = step.commit(front, check);
     apply_delta(delta, std::move(plan), stats);
     return delta.crack.new_crack_faces;
   } catch (const GeometryError&) {
@@ -289,14 +288,8 @@ void Simulation::Impl::begin_first_cut(const TimeStep& step, std::optional<First
   Advance& advance = first->plan.advances[0];
   begin(advance, stats);
   Stopwatch watch;
-  if (advance.split) advance.split->closest = closest_after(body, advance.split->crack);
+  if (advance.split) advance.split->prepare();
   stats.split.binding_seconds += watch.lap();
-}
-
-// Takes back what begin_first_cut() has begun.
-void Simulation::Impl::undo(const std::optional<FirstCut>& first) {
-  if (first && !first->plan.advances.empty() && first->plan.advances[0].split)
-    undo_split(body, *first->plan.advances[0].split);
 }
 
 // Moves all blades through the time step that the nodes have just made. `first`: the first cut, if
@@ -527,16 +520,11 @@ void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   } else if (scene.implicit) {
     // Contact reads the nodes alone, which a crack that begins does not change.
     way = NodeWay(before, state.motion.displacement);
-    try {
-      const double before_split = stats.split_seconds();
-      const double beside = seconds_beside(
-          stats.contact_seconds, [&] { begin_first_cut(step, first, stats); },
-          [&] { finish_contact(std::move(contact), before, step.dt, stats); });
-      stats.front_seconds += std::max(0.0, beside - (stats.split_seconds() - before_split));
-    } catch (...) {
-      undo(first);
-      throw;
-    }
+    const double before_split = stats.split_seconds();
+    const double beside = seconds_beside(
+        stats.contact_seconds, [&] { begin_first_cut(step, first, stats); },
+        [&] { finish_contact(std::move(contact), before, step.dt, stats); });
+    stats.front_seconds += std::max(0.0, beside - (stats.split_seconds() - before_split));
   } else {
     finish_contact(std::move(contact), before, step.dt, stats);
     way = NodeWay(before, state.motion.displacement);

@@ -84,10 +84,9 @@ bool rests(const EdgeFront& edge, std::span<const EdgePoint> next) {
 
 bool rests(const FrontState& front, std::span<const Vec3> mapped, std::span<const double> spacing,
            std::span<const Vec3> to) {
-  constexpr double least_way = 0.05;  // spacings; the shortest segment of an edge
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Vec3& place = front.points[i].position;
-    if (to[i] != place && !((mapped[i] - place).norm() < least_way * spacing[i])) return false;
+    if (to[i] != place && !((mapped[i] - place).norm() < resolved_by_front * spacing[i])) return false;
   }
   return true;
 }

@@ -13,6 +13,13 @@
 
 namespace geo {
 
+/// The shortest segment and the shortest way of a front, in node spacings. A sheet nearer than that
+/// is not told from the front.
+constexpr double resolved_by_front = 0.05;
+/// The distance from a sheet of its own blade within which an edge is beside it, in node spacings:
+/// it is in that cut, goes on from it, or moves back along it.
+constexpr double beside_own_sheet = 0.25;
+
 /// A point of a blade's edge that was mapped into the material.
 struct EdgePoint {
   double at = 0;  ///< edge parameter: i + t lies between the blade's points i and i + 1

@@ -13,7 +13,7 @@ namespace {
 bool retreats(const Complex& surface, const FrontState& front, const Vec3& from, const Vec3& to, double spacing) {
   const auto behind = [&](const Vec3& y, double slope) {
     const double ahead = distance_from_front(front, y);
-    return ahead > 0 && distance_from_crack(surface, front.crack, y, 0.25 * spacing) < slope * ahead;
+    return ahead > 0 && distance_from_crack(surface, front.crack, y, beside_own_sheet * spacing) < slope * ahead;
   };
   // Half the way: a blade that is pulled out ends in air, but its way begins along the sheet.
   return behind(to, 0.5) || behind(0.5 * (from + to), 0.1);

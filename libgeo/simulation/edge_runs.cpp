@@ -20,10 +20,6 @@ constexpr double most_deviation = 0.02;
 // Longest segment of a front, in spacings: a midpoint alone does not see an edge bent twice.
 constexpr double longest_segment = 2;
 
-// The walls of existing cuts are found along an edge to this, in spacings: the shortest segment of
-// a run.
-constexpr double wall_accuracy = 0.05;
-
 // Longest segment beside an existing cut, in spacings: shorter than an edge is in a cut of which a
 // run counts (see CutLeaver).
 constexpr double longest_beside_cut = 0.5;
@@ -79,7 +75,8 @@ class EdgeSampler {
     const bool ends = a.within != b.within, meets_cut = a.is_in_cut != b.is_in_cut;
     if ((ends || !a.within) && length < 0.25 * spacing) return;
     const Sample middle = at(0.5 * (a.at + b.at));
-    const bool straight = a.within && b.within && middle.within && (!meets_cut || length < wall_accuracy * spacing) &&
+    const bool straight = a.within && b.within && middle.within &&
+                          (!meets_cut || length < resolved_by_front * spacing) &&
                           (b.material - a.material).norm() <= longest_segment * spacing &&
                           (middle.material - 0.5 * (a.material + b.material)).norm() <= most_deviation * spacing;
     if (straight && !passes_cut(a, b, length, spacing)) return;
@@ -216,7 +213,7 @@ bool continues_current(const std::vector<EdgePoint>& run, const EdgeFront& edge,
   const double from = std::max(run.front().at, edge.at.front()), to = std::min(run.back().at, edge.at.back());
   for (const EdgePoint& p : run) {
     if (p.at < from || p.at > to) continue;
-    const double reach = 0.25 * p.spacing;
+    const double reach = beside_own_sheet * p.spacing;
     if ((place_near(edge, p.at) - p.material).norm() < 4 * p.spacing ||
         distance_from_crack(surface, edge.front.crack, p.material, reach) < reach)
       return true;
@@ -296,7 +293,7 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
     const Sample& s = samples[i];
     if (!last || is_end[i] || torn(*last, s)) runs.emplace_back();
     auto& run = runs.back();
-    if (run.size() > 1 && (s.material - run.back().material).norm() < 0.05 * s.spacing)
+    if (run.size() > 1 && (s.material - run.back().material).norm() < resolved_by_front * s.spacing)
       run.back() = s.point();
     else
       run.push_back(s.point());

@@ -13,11 +13,6 @@
 namespace geo {
 namespace {
 
-// Distances from sheets, in node spacings: of any crack, as rests() has it; of the blade's own, as
-// hold_retreating() has it.
-constexpr double any_reach = 0.05;
-constexpr double own_reach = 0.25;
-
 // The place of a sheet nearest to a point.
 struct SheetPlace {
   Vec3 place, normal;
@@ -91,17 +86,17 @@ ExistingCuts::ExistingCuts(const Complex& surface, std::span<const EdgeFront> fr
 bool ExistingCuts::contain(const Vec3& place, double spacing) const {
   if (surface_.crack_count() == 0) return false;
   std::vector<FaceId> near;
-  surface_.faces_near(Box3{place, place}.grown(own_reach * spacing), near);
+  surface_.faces_near(Box3{place, place}.grown(beside_own_sheet * spacing), near);
   double nearest_own = std::numeric_limits<double>::infinity();
   for (const FaceId f : near) {
     const std::int32_t crack = surface_.face(f).crack;
     if (crack == 0) continue;
     const auto [a, b, c] = surface_.corners(f);
     const double distance = (closest_point_on_triangle(place, a, b, c) - place).norm();
-    if (distance < any_reach * spacing) return true;
+    if (distance < resolved_by_front * spacing) return true;
     if (std::binary_search(own_.begin(), own_.end(), crack)) nearest_own = std::min(nearest_own, distance);
   }
-  return nearest_own < own_reach * spacing && !is_ahead(place, nearest_own);
+  return nearest_own < beside_own_sheet * spacing && !is_ahead(place, nearest_own);
 }
 
 bool ExistingCuts::may_contain_between(const Vec3& from, const Vec3& to, double spacing) const {
@@ -109,7 +104,7 @@ bool ExistingCuts::may_contain_between(const Vec3& from, const Vec3& to, double 
   Box3 box{from, from};
   box.add(to);
   std::vector<FaceId> near;
-  surface_.faces_near(box.grown(any_reach * spacing), near);
+  surface_.faces_near(box.grown(resolved_by_front * spacing), near);
   return std::any_of(near.begin(), near.end(), [&](FaceId f) { return surface_.face(f).crack != 0; });
 }
 
@@ -147,8 +142,8 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
     is_in_air[i] = !is_inside(surface, place.position);
     if (is_in_air[i]) p.material = place.position;
     if (is_in_air[i] || !is_whole[i] || !cuts.contain(place.position, p.spacing)) continue;
-    const SheetPlace sheet = nearest_sheet(surface, place.position, own_reach * p.spacing, is_crack);
-    const double height = any_reach * p.spacing;
+    const SheetPlace sheet = nearest_sheet(surface, place.position, beside_own_sheet * p.spacing, is_crack);
+    const double height = resolved_by_front * p.spacing;
     is_in_cut[i] = std::isfinite(sheet.distance);
     p.material = is_in_cut[i] ? sheet.over(height, p.material, 2 * height) : place.position;
     rise[i] = height * sheet.normal;
@@ -168,7 +163,7 @@ void cross_first(const Complex& surface, const FrontState& front, std::span<cons
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Vec3& from = front.points[i].position;
     is_inner[i] = is_inside(surface, from);
-    const SheetPlace sheet = nearest_sheet(surface, from, 1.5 * any_reach * spacing[i], is_crack);
+    const SheetPlace sheet = nearest_sheet(surface, from, 1.5 * resolved_by_front * spacing[i], is_crack);
     begins_in_cut[i] = is_inner[i] && std::isfinite(sheet.distance);
     if (begins_in_cut[i]) to[i] = from - 2 * sheet.height(from) * sheet.normal;
   }

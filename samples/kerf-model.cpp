@@ -40,7 +40,9 @@ int main(int argc, char** argv) {
       std::sort(axis, axis + 3, [&](int a, int b) { return size[a] > size[b]; });
       const double d = box.diagonal(), angle = tilt * 3.14159265358979 / 180;
       geo::Vec3 normal = geo::Vec3::Zero(), down = geo::Vec3::Zero(), along = geo::Vec3::Zero();
-      normal[axis[0]] = 1, down[axis[1]] = -1, along[axis[2]] = 1;
+      normal[axis[0]] = 1;
+      down[axis[1]] = -1;
+      along[axis[2]] = 1;
       const geo::Vec3 n = std::cos(angle) * normal + std::sin(angle) * along,
                       a = std::cos(angle) * along - std::sin(angle) * normal;
       geo::Front front{"halve", false, {}};

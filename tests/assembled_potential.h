@@ -54,7 +54,8 @@ class AssembledPotential {
   }
   /// Forces at u; product() uses the Hessian there from now on.
   std::vector<Vec3> force(const std::vector<Vec3>& u) {
-    energy(u), sum_.update_derivatives(island_, {1});
+    energy(u);
+    sum_.update_derivatives(island_, {1});
     std::vector<Vec3> force;
     for (std::size_t i = 0; i < u.size(); ++i) force.push_back(sum_.force_at(i));
     return force;

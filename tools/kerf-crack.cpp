@@ -30,7 +30,8 @@ void check(Command& w) {
     char rest = 0;
     if (std::sscanf(w.steps.c_str(), "%lu:%lu%c", &a, &b, &rest) != 2 || a >= b)
       throw tool::UsageError("--steps '" + w.steps + "' is not A:B with A < B");
-    w.from = a, w.to = b;
+    w.from = a;
+    w.to = b;
   }
   if (!(w.max_move >= 0)) throw tool::UsageError("--max-move must not be negative");
   if (!(w.remesh >= 0 && w.remesh <= 30)) throw tool::UsageError("--remesh must be an angle between 0 and 30 degrees");
@@ -96,7 +97,8 @@ class Cutting {
   void insert(const std::string& name, const std::vector<geo::Vec3>& points,
               const std::vector<geo::Triangle>& triangles) {
     geo::TriangleMesh sheet;
-    sheet.vertices = points, sheet.triangles = triangles;
+    sheet.vertices = points;
+    sheet.triangles = triangles;
     geo::CrackStats work;
     geo::CrackDelta delta;
     try {
@@ -111,7 +113,9 @@ class Cutting {
   void roughen() {
     if (!(w_.jagged > 0)) return;
     geo::RoughenOptions options;
-    options.amplitude = w_.jagged, options.frequency = w_.bumps, options.seed = t_.seed;
+    options.amplitude = w_.jagged;
+    options.frequency = w_.bumps;
+    options.seed = t_.seed;
     geo::RoughenStats work;
     geo::roughen(complex_, held(), options, &work);
     note("\"jagged\":{\"divisions\":" + std::to_string(work.divisions) + ",\"moves\":" + std::to_string(work.moves) +

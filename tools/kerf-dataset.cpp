@@ -68,7 +68,8 @@ dataset::Settings settings_of(const Command& w, std::uint64_t seed) {
       throw tool::UsageError("--patterns: " + name + " is there twice");
   }
   if (s.patterns.empty()) throw tool::UsageError("--patterns is empty");
-  s.pieces = range("--pieces", w.pieces), s.jagged = range("--jagged", w.jagged);
+  s.pieces = range("--pieces", w.pieces);
+  s.jagged = range("--jagged", w.jagged);
   if (!(s.pieces.low >= 2 && s.pieces.high <= 100000) || s.pieces.low != std::floor(s.pieces.low) ||
       s.pieces.high != std::floor(s.pieces.high))
     throw tool::UsageError("--pieces must be whole numbers between 2 and 100000");
@@ -81,8 +82,15 @@ dataset::Settings settings_of(const Command& w, std::uint64_t seed) {
     throw tool::UsageError("--seed is too large");
   if (w.per_shard < 1 || w.per_shard > 10000) throw tool::UsageError("--per-shard must be between 1 and 10000");
   if (w.attempts < 1 || w.attempts > 10000) throw tool::UsageError("--attempts must be between 1 and 10000");
-  s.first_seed = seed, s.seeds = w.seeds, s.bumps = w.bumps, s.attempts = w.attempts, s.per_shard = w.per_shard;
-  s.rotate = w.rotate, s.single = w.single, s.repair = w.repair, s.folders = w.layout == "folders";
+  s.first_seed = seed;
+  s.seeds = w.seeds;
+  s.bumps = w.bumps;
+  s.attempts = w.attempts;
+  s.per_shard = w.per_shard;
+  s.rotate = w.rotate;
+  s.single = w.single;
+  s.repair = w.repair;
+  s.folders = w.layout == "folders";
   if (s.folders && s.single) throw tool::UsageError("--single is for --layout npz; PLY files have doubles");
   s.split = split(w.split);
   return s;

@@ -30,7 +30,8 @@ int main(int argc, char** argv) {
     if (guides != 0 && !(guides >= 0.05 && guides <= 10))
       throw tool::UsageError("--guides must be 0, or from 0.05 to 10");
     geo::BodyOptions options;
-    options.k = k, options.guide_spacing = guides;
+    options.k = k;
+    options.guide_spacing = guides;
     if (method == "mfw")
       options.method = geo::NeighborMethod::mfw;
     else if (method == "dijkstra")

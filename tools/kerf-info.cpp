@@ -74,8 +74,10 @@ std::string report_other(const Command& c, const std::string& path, const std::s
   if (c.asks() && (kind != tool::Kind::surface || c.vertex < 0))
     throw geo::InputError(path + ": is no body, which alone has nodes and edges to ask for");
   if (kind == tool::Kind::nodes) return info::report_nodes(geo::parse_nodes(bytes, path), c.options, report);
-  if (kind == tool::Kind::fronts)
-    return info::report_fronts(geo::parse_fronts(bytes, path), c.options, report), std::string();
+  if (kind == tool::Kind::fronts) {
+    info::report_fronts(geo::parse_fronts(bytes, path), c.options, report);
+    return std::string();
+  }
   const auto file = tool::parse_surface(bytes, path);
   if (c.vertex < 0) return info::report_surface(file, c.options, report);
   info::ask_vertex(file.mesh, static_cast<std::size_t>(c.vertex), report);
@@ -182,7 +184,10 @@ int main(int argc, char** argv) {
   t.option("--horizon", c.horizon, "Horizon of a node for peridynamics, in node spacings, from 1 to 20");
   t.output("Where --compact writes", {".kerf"});
   return t.run(argc, argv, [&] {
-    if (c.paths.empty() && c.edge.size() == 3) c.paths = {c.edge[2]}, c.edge.pop_back();  // --edge I J FILE
+    if (c.paths.empty() && c.edge.size() == 3) {
+      c.paths = {c.edge[2]};
+      c.edge.pop_back();
+    }  // --edge I J FILE
     check(c, t);
     if (c.compact || !c.exported.empty()) return write(c, t);
     c.paths.size() > 1 && !c.diff ? many(c, t) : one(c, t);

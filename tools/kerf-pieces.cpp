@@ -222,7 +222,8 @@ int main(int argc, char** argv) {
     if (w.unit > 0)
       for (geo::Chunk& chunk : chunks) chunk.mesh.unit = w.unit;
     geo::ChunkLabels labels;
-    labels.strength = w.strength, labels.density = w.density;
+    labels.strength = w.strength;
+    labels.density = w.density;
     labels.levels = geo::make_hierarchy(found.volume, bonds, static_cast<std::size_t>(w.levels));
     say_assumptions(t, w, chunks);
     write(t.output_path, w, chunks, bonds, labels);

@@ -74,7 +74,10 @@ int main(int argc, char** argv) {
   t.output("Nodes as PCD (or .ply)", {".pcd", ".ply"});
   return t.run(argc, argv, [&] {
     geo::SampleOptions options;
-    options.levels = levels, options.jitter = jitter, options.seed = t.seed, options.across = across,
+    options.levels = levels;
+    options.jitter = jitter;
+    options.seed = t.seed;
+    options.across = across;
     options.support = support;
     if (levels < 1 || levels > 10) throw tool::UsageError("--levels must be from 1 to 10");
     if (count < 0 || (count > 0 && !spacing.empty()))

@@ -55,9 +55,14 @@ geo::ScoreOptions options_of(const Command& w, std::uint64_t seed) {
   if (!(w.bumps > 0 && w.bumps <= 1e4)) throw tool::UsageError("--bumps must be positive and at most 10000");
   if (!(w.cluster > 0 && w.cluster <= 10)) throw tool::UsageError("--cluster must be above 0 and at most 10");
   if (!(w.grain >= 1 && w.grain <= 1000)) throw tool::UsageError("--grain must be between 1 and 1000");
-  o.pieces = w.pieces, o.attempts = w.attempts;
-  o.jagged.amplitude = w.jagged, o.jagged.frequency = w.bumps, o.jagged.seed = seed;
-  o.pattern.cluster = w.cluster, o.pattern.grain = w.grain, o.pattern.seed = seed;
+  o.pieces = w.pieces;
+  o.attempts = w.attempts;
+  o.jagged.amplitude = w.jagged;
+  o.jagged.frequency = w.bumps;
+  o.jagged.seed = seed;
+  o.pattern.cluster = w.cluster;
+  o.pattern.grain = w.grain;
+  o.pattern.seed = seed;
   for (const auto& path : w.curves)
     for (const auto& front : geo::read_curves(path)) {
       if (front.is_sheet())

@@ -121,8 +121,11 @@ class Drawing {
     view::Stage stage;
     if (run)
       look_around(files);
-    else
-      stage = staged(w_.paths), look_at(stage), eye_.all_round = true;
+    else {
+      stage = staged(w_.paths);
+      look_at(stage);
+      eye_.all_round = true;
+    }
     const view::Sequence picture = [&](int i) {
       if (run) return frame(files[static_cast<std::size_t>(i)], static_cast<std::size_t>(i), files.size());
       geo::report(progress_, "render", static_cast<std::size_t>(i), static_cast<std::size_t>(count));
@@ -151,7 +154,8 @@ class Drawing {
   void look_around(const std::vector<std::string>& files) {
     for (const auto& file : files) {
       const view::Stage stage = staged({file});
-      look_at(stage), all_.add(view::box_of(stage));
+      look_at(stage);
+      all_.add(view::box_of(stage));
     }
   }
   view::Picture frame(const std::string& file, std::size_t i, std::size_t count) const {
@@ -226,7 +230,9 @@ int main(int argc, char** argv) {
     const Kind kind = kind_of_output(t.output_path);
     view::RenderOptions options;
     const bool small = folder || kind == Kind::webp || kind == Kind::mp4;
-    options.width = small ? 480 : 960, options.height = small ? 360 : 720, options.samples = w.samples;
+    options.width = small ? 480 : 960;
+    options.height = small ? 360 : 720;
+    options.samples = w.samples;
     char rest = 0;
     if (!w.size.empty() &&
         (std::sscanf(w.size.c_str(), "%dx%d%c", &options.width, &options.height, &rest) != 2 ||
@@ -234,12 +240,17 @@ int main(int argc, char** argv) {
       throw tool::UsageError("--size '" + w.size + "' is not WIDTHxHEIGHT");
     view::Camera eye;
     const auto angles = numbers(w.camera, 2, 2, "--camera '" + w.camera + "' is not AZIMUTH,ELEVATION");
-    eye.azimuth = angles[0], eye.elevation = angles[1], eye.zoom = w.zoom,
+    eye.azimuth = angles[0];
+    eye.elevation = angles[1];
+    eye.zoom = w.zoom;
     eye.y_up = w.up == "y" || (w.up == "auto" && folder && view::find_run(w.paths[0]).y_up);
     const std::string target = t.target(true);
     const auto progress = t.progress();
     std::optional<geo::Body> before;
-    if (!w.before.empty()) before = geo::read_body(w.before), look.before = &*before;
+    if (!w.before.empty()) {
+      before = geo::read_body(w.before);
+      look.before = &*before;
+    }
 
     if (kind == Kind::html) {
       const view::PageOptions page_options{w.megabytes, look.before, w.rate, eye.y_up};

@@ -84,7 +84,8 @@ inline geo::SurfaceFile read_solid(const std::string& path, bool repair, const S
 inline void require_whole(geo::TriangleMesh& mesh, const std::string& path, const std::string& advice) {
   if (std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; }))
     throw geo::InputError(path + ": is cut already; " + advice);
-  mesh.patch.clear(), mesh.site.clear();
+  mesh.patch.clear();
+  mesh.site.clear();
 }
 
 /// A model for a scene: in metres, and without the materials of a .glb, as each frame would hold

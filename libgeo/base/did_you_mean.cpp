@@ -13,7 +13,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_previous, previous(b.size() + 1), current(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) current[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    before_previous = previous, previous = current;
+    before_previous = previous;
+    previous = current;
     current[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       current[j] = std::min({previous[j] + 1, current[j - 1] + 1, previous[j - 1] + (a[i - 1] != b[j - 1])});
@@ -34,7 +35,10 @@ std::string did_you_mean(std::string_view written, const std::vector<std::string
   for (const auto& word : known) {
     const std::size_t distance = word.starts_with(written) ? 1 : edit_distance(written, word);
     // At most a third of the letters may differ, one in short words. A prefix counts as distance 1.
-    if (distance < least && 3 * distance <= std::max<std::size_t>(3, word.size())) least = distance, best = &word;
+    if (distance < least && 3 * distance <= std::max<std::size_t>(3, word.size())) {
+      least = distance;
+      best = &word;
+    }
   }
   return best ? "; did you mean '" + *best + "'?" : std::string();
 }

@@ -56,7 +56,8 @@ void parallel_invoke(const std::function<void()>& first, const std::function<voi
     }
   };
   if (threads() == 1 || serial_scopes > 0) {
-    guarded(0), guarded(1);
+    guarded(0);
+    guarded(1);
   } else {
 #ifdef KERF_SANITIZE_THREADS
     parallel_for_by_threads(threads(), 2, 1, [&](std::size_t i, std::size_t) { guarded(i); });

@@ -61,7 +61,10 @@ class UninitializedArray {
   struct Release {
     std::size_t bytes = 0;
     /// Frees the elements.
-    void operator()(T* at) const { forbid_huge_pages(at, bytes), ::operator delete(at, alignment); }
+    void operator()(T* at) const {
+      forbid_huge_pages(at, bytes);
+      ::operator delete(at, alignment);
+    }
   };
   std::unique_ptr<T, Release> at_;
   std::size_t size_ = 0;

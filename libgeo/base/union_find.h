@@ -27,7 +27,8 @@ class UnionFind {
   }
   /// Merges the sets of a and b.
   void unite(std::uint32_t a, std::uint32_t b) {
-    a = find(a), b = find(b);
+    a = find(a);
+    b = find(b);
     parent_[std::max(a, b)] = std::min(a, b);
   }
 

@@ -81,7 +81,8 @@ SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
   // As a rule the nearest vertex is visible, so a small ball with few faces suffices.
   for (const double share : {0.125, 0.25, 0.5, 1.0}) {
     const double r = share * reach;
-    faces.clear(), near.clear();
+    faces.clear();
+    near.clear();
     k.faces_near(Box3{p, p}.grown(r * (1 + 1e-9)), faces);  // a margin for rounding
     for (const FaceId f : faces)
       for (const VertexId v : k.face(f).v)
@@ -107,7 +108,10 @@ NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId 
   for (const auto i : near) {
     if (binding.closest[i] != v) continue;
     const double d = (body.nodes.position[i] - q).norm();
-    if (!best.valid() || d < least) least = d, best = NodeId(i);
+    if (!best.valid() || d < least) {
+      least = d;
+      best = NodeId(i);
+    }
   }
   return best;
 }
@@ -148,14 +152,20 @@ Binding build_binding(const Body& body) {
         around.clear();
         k.surface_neighbors(v, around);
         for (const auto w : around)
-          if (!b.master[w.index()].valid())
-            b.master[w.index()] = b.master[v.index()], b.parent[w.index()] = v, next.push_back(w);
+          if (!b.master[w.index()].valid()) {
+            b.master[w.index()] = b.master[v.index()];
+            b.parent[w.index()] = v;
+            next.push_back(w);
+          }
       }
       level.swap(next);
     }
   };
   for (std::uint32_t v = 0; v < n; ++v)
-    if (b.master_node[v].valid()) b.master[v] = b.parent[v] = SurfaceVertexId(v), level.push_back(SurfaceVertexId(v));
+    if (b.master_node[v].valid()) {
+      b.master[v] = b.parent[v] = SurfaceVertexId(v);
+      level.push_back(SurfaceVertexId(v));
+    }
   spread();
   // An unseen shell (a small cavity, a piece without a node) takes the nearest node of its piece,
   // else the nearest of all.
@@ -168,7 +178,10 @@ Binding build_binding(const Body& body) {
   for (std::uint32_t v = 0; v < n; ++v) {
     const SurfaceVertexId id(v);
     if (!k.alive(id) || b.master[v].valid()) continue;
-    if (pieces.of_side.empty()) pieces = find_pieces(k), piece_of_node.assign(body.nodes.size(), unknown);
+    if (pieces.of_side.empty()) {
+      pieces = find_pieces(k);
+      piece_of_node.assign(body.nodes.size(), unknown);
+    }
     const auto piece = piece_of_side(k.corner_of(id).first);
     NodeId node = carrier_of_unseen_shell(body, id, [&](NodeId i) {
       auto& known = piece_of_node[i.index()];

@@ -29,15 +29,20 @@ class BindingUpdate::Impl {
         depth_(body.cache->depth),
         unseen_masters_(body.cache->unseen_masters) {
     const std::size_t n = k_.surface_vertex_count();
-    b_.master_node.resize(n), b_.master.resize(n), b_.parent.resize(n);
+    b_.master_node.resize(n);
+    b_.master.resize(n);
+    b_.parent.resize(n);
     depth_.resize(n, no_depth);
   }
 
   void follow_step(const CrackDelta& delta, NodeId first_new, const std::vector<NodeId>& moved,
                    ClosestVertices closest) {
-    first_new_ = first_new, moved_ = moved;
+    first_new_ = first_new;
+    moved_ = moved;
     std::erase_if(closest, [&](const auto& c) { return std::binary_search(moved.begin(), moved.end(), c.first); });
-    update_closest_of(added_nodes()), update_closest_of(moved), update_closest(closest);
+    update_closest_of(added_nodes());
+    update_closest_of(moved);
+    update_closest(closest);
     for (const auto v : delta.removed_surface_vertices) retargeted_.insert(v);
     update_masters();
     update_trees_at_changed_edges(delta);
@@ -290,7 +295,8 @@ void BindingUpdate::Impl::grow() {
     const auto [depth, parent, v] = queue_.top();
     queue_.pop();
     if (std::tie(depth_[v.index()], b_.parent[v.index()]) <= std::tie(depth, parent)) continue;
-    depth_[v.index()] = depth, b_.parent[v.index()] = parent;
+    depth_[v.index()] = depth;
+    b_.parent[v.index()] = parent;
     changed.push({depth, v});
     for (const auto w : around(v)) offer(w, depth + 1, v);
   }

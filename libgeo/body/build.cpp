@@ -34,7 +34,8 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
   Body body;
   body.surface = std::move(surface);
   body.nodes = std::move(nodes);
-  body.k = options.k, body.guide_spacing = options.guide_spacing;
+  body.k = options.k;
+  body.guide_spacing = options.guide_spacing;
   set_original_nodes(body, static_cast<std::uint32_t>(body.nodes.size()));
   body.debris.assign(body.nodes.size(), 0);
   body.cache->grid =

@@ -66,7 +66,8 @@ BodyReport check_body(const Body& body) {
     }
     auto& known_component = component_of[static_cast<std::size_t>(piece)];
     if (known_component != ~0u) continue;
-    known_component = 0, ++report.pieces_without_node;
+    known_component = 0;
+    ++report.pieces_without_node;
     if (point_in_piece(k, SurfaceVertexId(v), body.cache->grid.cell(), piece_of_side))
       add_problem("the piece of surface vertex " + std::to_string(v) + " has no node");
   }

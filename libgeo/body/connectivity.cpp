@@ -22,7 +22,8 @@ NodeId nearest_old(const Body& body, const Vec3& x, NodeId first_new, const Acce
 void pair_with_representative(Regions& components, std::int32_t piece, NodeId i, ConnectivityMismatch& mismatch) {
   if (piece < 0) return;
   const NodeId other = mismatch.representative.try_emplace(piece, i).first->second;
-  components.seed(i.value), components.seed(other.value);
+  components.seed(i.value);
+  components.seed(other.value);
   if (components.joined(other.value, i.value)) return;
   for (const auto& [a, b] : mismatch.disconnected)
     if ((a == other && components.joined(b.value, i.value)) || (b == other && components.joined(a.value, i.value)))
@@ -95,7 +96,10 @@ class StepComparison {
 
   /// Each part into which cut edges divide a component has an end of a cut edge to another part.
   void pair_ends_of_cut_edges(std::span<const NodePair> cut) {
-    for (const auto& [a, b] : cut) components_.seed(a.value), components_.seed(b.value);
+    for (const auto& [a, b] : cut) {
+      components_.seed(a.value);
+      components_.seed(b.value);
+    }
     components_.grow_seeds();
     for (const auto& [a, b] : cut) {
       if (components_.joined(a.value, b.value)) continue;
@@ -185,7 +189,10 @@ Regions components_of(const Body& body) {
 ConnectivityMismatch find_mismatch(const Body& body, const std::vector<std::uint32_t>& component) {
   std::vector<std::uint32_t> size, first;
   for (std::uint32_t i = 0; i < component.size(); ++i) {
-    if (component[i] == first.size()) first.push_back(i), size.push_back(0);
+    if (component[i] == first.size()) {
+      first.push_back(i);
+      size.push_back(0);
+    }
     ++size[component[i]];
   }
   const auto count = first.size();

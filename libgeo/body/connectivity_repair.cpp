@@ -33,7 +33,8 @@ bool insert_nodes_along(Body& body, NodeId i, NodeId j, double spacing, std::vec
     NodeId node = j;
     if (next + 1 < path.size()) {
       node = insert_node(body, path[next], donors.front(), spacing);
-      donors.push_back(donors.front()), donors.push_back(node);
+      donors.push_back(donors.front());
+      donors.push_back(node);
       donors.pop_front();
     }
     joins.push_back({std::min(last, node), std::max(last, node)});
@@ -160,8 +161,10 @@ std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<Si
     const Vec3 &a = corner(), &b = corner(), &c = corner(), &d = corner();
     const Vec3 x = (1 - u) * a + u * ((1 - v) * b + v * ((1 - w) * c + w * d));
     const double distance = boundary.inside(x) ? boundary.closest(x).distance : 0;
-    if (distance > clearance && !is_blocked(k, x, x) && piece_containing(k, x, piece) == wanted)
-      clearance = distance, best = x;
+    if (distance > clearance && !is_blocked(k, x, x) && piece_containing(k, x, piece) == wanted) {
+      clearance = distance;
+      best = x;
+    }
   }
   return best;
 }
@@ -193,10 +196,13 @@ class ConnectivityRepair {
   void fill_empty_pieces() {
     for (const auto v : mismatch_.empty_pieces) {
       const auto piece = body_.cache->piece[v.index()];
-      if (const NodeId i = insert_node_into_piece(body_, v, mismatch_.parts[piece]); i.valid())
-        mismatch_.representative[piece] = i, body_.cache->pieces_without_node.erase(piece);
-      else
-        mismatch_.representative.erase(piece), body_.cache->pieces_without_node.insert(piece);
+      if (const NodeId i = insert_node_into_piece(body_, v, mismatch_.parts[piece]); i.valid()) {
+        mismatch_.representative[piece] = i;
+        body_.cache->pieces_without_node.erase(piece);
+      } else {
+        mismatch_.representative.erase(piece);
+        body_.cache->pieces_without_node.insert(piece);
+      }
     }
   }
   // By an edge where two components see each other. Else by nodes: at the walls of the passage in
@@ -210,7 +216,8 @@ class ConnectivityRepair {
     std::vector<FaceId> walls;
     std::set<std::uint32_t> handled;  // components, by their lowest nodes
     for (const auto& [a, b] : mismatch_.disconnected) {
-      components.seed(a.value), components.seed(b.value);
+      components.seed(a.value);
+      components.seed(b.value);
       if (components.joined(a.value, b.value)) continue;
       const NodeId i = components.whole(a.value) ? a : b;  // in the smaller component
       if (!handled.insert(components.lowest(i.value)).second) continue;
@@ -313,10 +320,12 @@ class ConnectivityRepair {
   }
   void find_remaining(NodeId first_new) {
     ConnectivityMismatch left;
-    left.representative = std::move(mismatch_.representative), left.parts = std::move(mismatch_.parts);
+    left.representative = std::move(mismatch_.representative);
+    left.parts = std::move(mismatch_.parts);
     Regions components = components_of(body_);
     for (const auto& [a, b] : mismatch_.disconnected) {
-      components.seed(a.value), components.seed(b.value);
+      components.seed(a.value);
+      components.seed(b.value);
       if (!components.joined(a.value, b.value)) left.disconnected.push_back({a, b});
     }
     pair_new_nodes(body_, components, first_new, left);

@@ -84,7 +84,8 @@ GuideChange guides_after(const Body& body, const CrackDelta& crack) {
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   };
-  tidy(change.retired), tidy(others);
+  tidy(change.retired);
+  tidy(others);
   GuideSet taken;
   for (const auto g : others)
     if (!std::binary_search(change.retired.begin(), change.retired.end(), g))

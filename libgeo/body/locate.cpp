@@ -63,8 +63,11 @@ std::int32_t piece_containing(const Complex& complex, const Vec3& p, const std::
   bool up = true;
   for (int i = 0; i < 3; ++i)
     for (const bool above : {true, false})
-      if (const double d = above ? extent.hi[i] - p[i] : p[i] - extent.lo[i]; d < shortest)
-        shortest = d, axis = i, up = above;
+      if (const double d = above ? extent.hi[i] - p[i] : p[i] - extent.lo[i]; d < shortest) {
+        shortest = d;
+        axis = i;
+        up = above;
+      }
   Box3 line{p, p};
   const double beyond = std::max(shortest, 0.0) + extent.diagonal();
   (up ? line.hi : line.lo)[axis] += up ? beyond : -beyond;
@@ -93,7 +96,8 @@ std::int32_t piece_containing(const Complex& complex, const Vec3& p, const std::
     if (facing == 0 || turn(t[1], t[2]) != facing || turn(t[2], t[0]) != facing) continue;
     const int before = up ? -facing : facing;  // where p is when the line meets the face
     if (orient3d(t[0], t[1], t[2], p) != before) continue;
-    count({f, before > 0 ? 1 : 0}, 1), count({f, before > 0 ? 0 : 1}, -1);
+    count({f, before > 0 ? 1 : 0}, 1);
+    count({f, before > 0 ? 0 : 1}, -1);
   }
   // Rounding may have exchanged two sheets: several pieces then contain p, and a crumb that is
   // inside out counts −1. The piece with the largest winding number is taken if the sum is

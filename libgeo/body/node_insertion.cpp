@@ -34,14 +34,17 @@ double take_volume(NodeSet& nodes, double spacing, std::span<const std::uint32_t
   double sum = 0, density = 0, largest = 0;
   for (const auto j : givers) {
     const double v = nodes.volume[j];
-    sum += v, density += v / std::pow(nodes.spacing[j], 3), largest = std::max(largest, v);
+    sum += v;
+    density += v / std::pow(nodes.spacing[j], 3);
+    largest = std::max(largest, v);
   }
   const double wanted = std::pow(spacing, 3) * density / double(givers.size()),
                share = std::min(0.5, wanted / (sum + wanted)), unit = std::ldexp(1.0, std::ilogb(largest) - 40);
   double taken = 0;
   for (const auto j : givers) {
     const double given = unit * std::floor(share * nodes.volume[j] / unit);
-    nodes.volume[j] -= given, taken += given;
+    nodes.volume[j] -= given;
+    taken += given;
   }
   return taken;
 }
@@ -70,8 +73,12 @@ void remove_nodes(Body& body, NodeId first) {
   for (std::uint32_t i = std::uint32_t(nodes.size()); i-- > first.value;) {
     nodes.volume[body.cache->donors.back().index()] += nodes.volume[i];
     body.cache->grid.erase(i, nodes.position[i]);
-    nodes.position.pop_back(), nodes.spacing.pop_back(), nodes.radius.pop_back(), nodes.volume.pop_back();
-    body.debris.pop_back(), body.cache->donors.pop_back();
+    nodes.position.pop_back();
+    nodes.spacing.pop_back();
+    nodes.radius.pop_back();
+    nodes.volume.pop_back();
+    body.debris.pop_back();
+    body.cache->donors.pop_back();
   }
 }
 
@@ -196,7 +203,8 @@ Vec3 position_off_faces(const Complex& surface, std::uint32_t node, const Vec3& 
     const auto t = surface.corners(f);
     const int above = orient3d(t[0], t[1], t[2], x);
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
-    normals[0].push_back(above < 0 ? Vec3(-n) : n), normals[1].push_back(above > 0 ? n : Vec3(-n));
+    normals[0].push_back(above < 0 ? Vec3(-n) : n);
+    normals[1].push_back(above > 0 ? n : Vec3(-n));
   }
   if (normals[0].empty()) return x;
   const auto on = std::partition(around.begin(), around.end(), [&](FaceId f) { return !touches(surface, f, x, x); });
@@ -216,7 +224,10 @@ Vec3 position_off_faces(const Complex& surface, std::uint32_t node, const Vec3& 
         continue;
       double least = farthest;
       for (const FaceId f : around) least = std::min(least, distance(f, to));
-      if (least > clearance) clearance = least, best = to;
+      if (least > clearance) {
+        clearance = least;
+        best = to;
+      }
       if (clearance > close) return best;
       break;
     }

@@ -36,7 +36,10 @@ bool flood(Body& body, SurfaceVertexId v, std::int32_t label) {
     around.clear();
     body.surface.surface_neighbors(found[i], around);
     for (const auto w : around) {
-      if (labels[w.index()] == unlabelled) labels[w.index()] = in_progress, found.push_back(w);
+      if (labels[w.index()] == unlabelled) {
+        labels[w.index()] = in_progress;
+        found.push_back(w);
+      }
       if (labels[w.index()] >= 0) label = labels[w.index()];
     }
   }
@@ -60,7 +63,8 @@ void label_inner_shells(Body& body) {
   for (std::size_t v = 0; v < kept.size(); ++v)
     if (k.alive(SurfaceVertexId(v)))
       labels[v] = kept[v] >= 0 ? kept[v] : old_label[static_cast<std::size_t>(labels[v])];
-  cache.piece_count = count, cache.pieces_without_node = without_node;
+  cache.piece_count = count;
+  cache.pieces_without_node = without_node;
   cache.inner_shells = true;
 }
 
@@ -105,7 +109,10 @@ void label_new_vertices(Body& body, const CrackDelta& delta, const std::vector<T
     }
   };
   label_across();
-  if (incomplete) label_inner_shells(body), label_across();
+  if (incomplete) {
+    label_inner_shells(body);
+    label_across();
+  }
 }
 
 // Walks the shells from both sides of new crack faces until they meet or the smaller one is

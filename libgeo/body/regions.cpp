@@ -18,7 +18,10 @@ Regions::Slot& Regions::slot(std::uint32_t element) {
   // Fibonacci hashing: the constant is 2⁶⁴ / φ (Knuth, vol. 3, § 6.4).
   std::size_t at = (element * std::uint64_t{0x9e3779b97f4a7c15}) >> 32 & mask;
   while (slots_[at].element != none && slots_[at].element != element) at = (at + 1) & mask;
-  if (slots_[at].element == none) slots_[at].element = element, ++used_;
+  if (slots_[at].element == none) {
+    slots_[at].element = element;
+    ++used_;
+  }
   return slots_[at];
 }
 

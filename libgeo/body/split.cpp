@@ -111,11 +111,13 @@ class BodyUpdater {
     ++body_.crack_steps;
   }
   void add_counts(SplitStats& stats) const {
-    stats.edges_cut += graph_update.cut_edges.size(), stats.edges_added += graph_update.added_edges.size();
+    stats.edges_cut += graph_update.cut_edges.size();
+    stats.edges_added += graph_update.added_edges.size();
     stats.nodes_updated += delta.updated_nodes.size();
     stats.nodes_added += body_.nodes.size() - delta.first_new_node.index();
     stats.repair_nodes += body_.nodes.size() - first_repair_node_;
-    stats.nodes_moved += delta.moved_nodes.size(), stats.orphans += delta.rebound_vertices.size();
+    stats.nodes_moved += delta.moved_nodes.size();
+    stats.orphans += delta.rebound_vertices.size();
   }
 
   BodyDelta delta;
@@ -145,7 +147,8 @@ BodyDelta update_after_crack(Body& body, CrackDelta crack, ClosestVertices close
   const double graph = seconds_since(clock);
   updater.rebind_vertices();
   if (stats) {
-    stats->resample_seconds += resample, stats->graph_seconds += graph;
+    stats->resample_seconds += resample;
+    stats->graph_seconds += graph;
     stats->binding_seconds += seconds_since(clock);
     updater.add_counts(*stats);
   }

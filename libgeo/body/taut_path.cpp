@@ -53,8 +53,10 @@ std::map<Side, Vec3> visible_sides(const Complex& k, const Vec3& x, double reach
       const auto t = k.corners(f);
       const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
       const double along = n.dot(to - x), at = along != 0 ? n.dot(t[0] - x) / along : 2;
-      if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2]))
-        first = at, side = {f, along < 0 ? 1 : 0};
+      if (at > 0 && at < first && segment_meets_triangle(x, to, t[0], t[1], t[2])) {
+        first = at;
+        side = {f, along < 0 ? 1 : 0};
+      }
     }
     if (side.face.valid()) add(side, x + first * (to - x));
   };
@@ -78,7 +80,10 @@ std::vector<Step> sides_between(const Complex& k, const std::map<Side, Vec3>& st
                                 const std::set<Step>& closed) {
   std::map<Side, Step> before;
   std::vector<Side> queue;
-  for (const auto& [side, at] : starts) before[side] = {side, 0}, queue.push_back(side);
+  for (const auto& [side, at] : starts) {
+    before[side] = {side, 0};
+    queue.push_back(side);
+  }
   for (std::size_t q = 0; q < queue.size(); ++q) {
     if (ends.count(queue[q])) {
       std::vector<Step> path{{queue[q], 0}};

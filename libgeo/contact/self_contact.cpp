@@ -52,8 +52,13 @@ MovingSurface initial_surface(const Body& body, const Solid& solid, const Surfac
 }  // namespace
 
 ContactStats& ContactStats::operator+=(const ContactStats& o) {
-  planes += o.planes, touching += o.touching, in_zones += o.in_zones, opened += o.opened, held += o.held;
-  tracking_error = std::max(tracking_error, o.tracking_error), seconds += o.seconds;
+  planes += o.planes;
+  touching += o.touching;
+  in_zones += o.in_zones;
+  opened += o.opened;
+  held += o.held;
+  tracking_error = std::max(tracking_error, o.tracking_error);
+  seconds += o.seconds;
   return *this;
 }
 
@@ -137,8 +142,11 @@ ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const std::ve
   surface_.move_to(move_without_crossing({surface().triangles, coincidence.representative, positions(), goal, gap(),
                                           2 * gap(), tracking_error ? &guess : nullptr},
                                          true, &bounded, &near_, &surface_.fans()));
-  ++revision_, near_.invalidate();
-  stats.planes = bounded.planes, stats.in_zones = bounded.in_zones, stats.held = bounded.held;
+  ++revision_;
+  near_.invalidate();
+  stats.planes = bounded.planes;
+  stats.in_zones = bounded.in_zones;
+  stats.held = bounded.held;
   for (std::size_t v = 0; v < targets.size(); ++v)
     if (weights_.alive(v)) stats.tracking_error = std::max(stats.tracking_error, (positions()[v] - targets[v]).norm());
   return stats;
@@ -152,7 +160,8 @@ EmbeddingPlan SelfContact::plan_embedding(const Body& body, const Solid& solid, 
 void SelfContact::commit(EmbeddingPlan plan, const Body& body, const BodyDelta& delta) {
   if (plan.revision != revision_) throw std::logic_error("the surface has changed since the embedding was planned");
   surface_.replace(std::move(plan.embedding.surface), std::move(plan.embedding.positions));
-  ++revision_, near_.reset();
+  ++revision_;
+  near_.reset();
   weights_.mark_changed(body, delta);
 }
 

@@ -264,10 +264,18 @@ FrontState prepared(const FrontState& front, const Complex& complex, double face
 }  // namespace
 
 CrackStats& CrackStats::operator+=(const CrackStats& o) {
-  faces_near += o.faces_near, triangles_cut += o.triangles_cut, new_crack_faces += o.new_crack_faces;
-  attempts += o.attempts, snapped += o.snapped, repairs += o.repairs;
-  near_seconds += o.near_seconds, meet_seconds += o.meet_seconds, split_seconds += o.split_seconds;
-  keep_seconds += o.keep_seconds, stitch_seconds += o.stitch_seconds, guard_seconds += o.guard_seconds;
+  faces_near += o.faces_near;
+  triangles_cut += o.triangles_cut;
+  new_crack_faces += o.new_crack_faces;
+  attempts += o.attempts;
+  snapped += o.snapped;
+  repairs += o.repairs;
+  near_seconds += o.near_seconds;
+  meet_seconds += o.meet_seconds;
+  split_seconds += o.split_seconds;
+  keep_seconds += o.keep_seconds;
+  stitch_seconds += o.stitch_seconds;
+  guard_seconds += o.guard_seconds;
   return *this;
 }
 

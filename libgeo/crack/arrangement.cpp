@@ -132,7 +132,10 @@ int Arrangement::locate_coplanar(std::uint32_t e, PointIndex p, std::uint8_t& on
   const auto& c = elements[e].corner;
   on = 0;
   for (int k = 0; k < 3; ++k)
-    if (c[k] == p) return on = corner_bits(k), 1;
+    if (c[k] == p) {
+      on = corner_bits(k);
+      return 1;
+    }
   const auto [axis, turn] = projection_of(points_, c);
   for (int k = 0; k < 3; ++k) {
     const int s = turn * orient2d(points_[c[k]], points_[c[(k + 1) % 3]], points_[p], axis);
@@ -182,11 +185,13 @@ PointIndex Arrangement::crossing_coplanar(std::uint32_t a, int edge_a, std::uint
 void Arrangement::add_shared(PointIndex p, int which, std::uint8_t on_mine, std::uint8_t on_other) {
   for (SharedPoint& s : shared_)
     if (s.point == p) {
-      s.on[which] |= on_mine, s.on[1 - which] |= on_other;
+      s.on[which] |= on_mine;
+      s.on[1 - which] |= on_other;
       return;
     }
   SharedPoint shared{p, {}};
-  shared.on[which] = on_mine, shared.on[1 - which] = on_other;
+  shared.on[which] = on_mine;
+  shared.on[1 - which] = on_other;
   shared_.push_back(shared);
 }
 
@@ -240,7 +245,8 @@ void Arrangement::meet_edge(std::uint32_t mine, std::uint32_t other, int k, int 
   int turn[3], up = 0, down = 0;
   for (int j = 0; j < 3; ++j) {
     turn[j] = geo::orient3d(from, to, points_[o[j]], points_[o[(j + 1) % 3]]);
-    up += turn[j] > 0, down += turn[j] < 0;
+    up += turn[j] > 0;
+    down += turn[j] < 0;
   }
   if (up > 0 && down > 0) return;
   const auto on_mine = static_cast<std::uint8_t>(1 << k);

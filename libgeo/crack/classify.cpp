@@ -20,7 +20,10 @@ bool in_material_wedge(const Arrangement& a, const Complex& complex, PointIndex 
   for (const EdgeUse& use : at) {
     const RadialFace face = radial_face(a, use, u);
     if (lies_on(a, u, v, child, face)) throw GeometryError("a part of the strip lies on a face");
-    if (!last || compare_around(a, u, v, child, face, last_face) > 0) last = &use, last_face = face;
+    if (!last || compare_around(a, u, v, child, face, last_face) > 0) {
+      last = &use;
+      last_face = face;
+    }
   }
   if (complex.face(a.elements[last->element].face).crack > 0) return true;
   // A skin face has material behind it: the wedge is material if the back looks counter-clockwise.
@@ -76,7 +79,10 @@ class Classifier {
         }
         strip_edges_.find(u, v, at_);
         for (const EdgeUse& next : at_)
-          if (!visited_[next.element]) visited_[next.element] = true, component_.push_back(next.element);
+          if (!visited_[next.element]) {
+            visited_[next.element] = true;
+            component_.push_back(next.element);
+          }
       }
     }
     if (inside > 0 && outside > 0) throw GeometryError("the strip is inside and outside at once");

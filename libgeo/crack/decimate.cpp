@@ -83,11 +83,15 @@ class Decimator {
     if (std::any_of(moved_now.begin(), moved_now.end(), [&](const auto& m) { return m.second > allowed_; }))
       return false;
     const auto delta = crack::try_commit(k_, *local, delta_);
-    if (!delta) return ++stats_.refused, false;
+    if (!delta) {
+      ++stats_.refused;
+      return false;
+    }
     for (const FaceId f : delta->new_faces) queue(f);
     contacts_.omit(b);
     for (const auto& [v, distance] : moved_now) moved_[v] = distance;
-    return ++stats_.collapses, true;
+    ++stats_.collapses;
+    return true;
   }
 
   Complex& k_;

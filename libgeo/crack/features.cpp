@@ -45,7 +45,8 @@ SurfaceLocation location_of(const Complex& k, VertexId v, const FeatureRules& ru
     std::sort(values.begin(), values.end());
     values.erase(std::unique(values.begin(), values.end()), values.end());
   };
-  sort_unique(location.sources), sort_unique(location.cracks);
+  sort_unique(location.sources);
+  sort_unique(location.cracks);
   std::sort(spokes.begin(), spokes.end());
   for (std::size_t i = 0, end; i < spokes.size(); i = end) {
     for (end = i + 1; end < spokes.size() && spokes[end].first == spokes[i].first;) ++end;

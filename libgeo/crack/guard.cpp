@@ -74,8 +74,11 @@ class Inspection {
       std::array<Vec3, 3> corners;
       std::array<std::uint32_t, 3> ids;
       bool rounded = moved_.empty();
-      for (int k = 0; k < 3; ++k)
-        corners[k] = point(f.v[k]), ids[k] = f.v[k].value, rounded = rounded || is_moved(f.v[k]);
+      for (int k = 0; k < 3; ++k) {
+        corners[k] = point(f.v[k]);
+        ids[k] = f.v[k].value;
+        rounded = rounded || is_moved(f.v[k]);
+      }
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
       const double apart = f.crack > 0 ? clearance_ : 0;
       // An exact face of a crack may still be too near to a face that an earlier step has rounded.
@@ -186,7 +189,10 @@ class Inspection {
     Box3 all;
     std::vector<Box3> boxes;
     boxes.reserve(count_);
-    for (const TestedFace& f : faces_) all.add(f.box), boxes.push_back(f.box);
+    for (const TestedFace& f : faces_) {
+      all.add(f.box);
+      boxes.push_back(f.box);
+    }
     int axis = 0;
     if (count_ > 0) (all.hi - all.lo).maxCoeff(&axis);
     const auto before = [&](std::uint32_t i, std::uint32_t j) {

@@ -15,7 +15,10 @@ class IndexMap {
   std::uint32_t& operator[](const Key& key) {
     if (2 * (used_ + 1) > slots_.size()) grow();
     Slot& slot = slots_[slot_of(key)];
-    if (slot.value == none) slot.key = key, ++used_;
+    if (slot.value == none) {
+      slot.key = key;
+      ++used_;
+    }
     return slot.value;
   }
   /// The index of the key, ~0u for an unknown one.

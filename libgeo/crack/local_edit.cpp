@@ -144,7 +144,10 @@ std::optional<LocalEdit> flip(const Complex& k, FaceId f, int e) {
     std::replace(order.begin(), order.end(), old, now);
     builder.order(u, v, std::move(order));
   };
-  exchange(c, a, f, left), exchange(a, d, g, left), exchange(b, c, f, right), exchange(d, b, g, right);
+  exchange(c, a, f, left);
+  exchange(a, d, g, left);
+  exchange(b, c, f, right);
+  exchange(d, b, g, right);
   builder.local.swept.push_back({k.point(a), k.point(b), k.point(c), k.point(d)});
   return std::move(builder.local);
 }

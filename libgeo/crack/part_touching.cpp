@@ -50,8 +50,10 @@ class EdgeDivision {
     sites_ += fresh;
     mesh_.site.push_back(site->second);
     const std::uint32_t t2 = halve(t, k, middle), u2 = halve(u, j, middle);
-    s_.beside[t][k] = u2, s_.beside[u2][j] = t;
-    s_.beside[t2][k] = u, s_.beside[u][j] = t2;
+    s_.beside[t][k] = u2;
+    s_.beside[u2][j] = t;
+    s_.beside[t2][k] = u;
+    s_.beside[u][j] = t2;
   }
 
   // Triangle t keeps the half at corner k; the other one, with the same corner numbers, is new.
@@ -60,11 +62,14 @@ class EdgeDivision {
     const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
     Triangle half = mesh_.triangles[t];
     auto beside = s_.beside[t];
-    half[k] = middle, mesh_.triangles[t][l] = middle;
+    half[k] = middle;
+    mesh_.triangles[t][l] = middle;
     for (auto& back : s_.beside[beside[l]])
       if (back == t && shares(beside[l], &back - s_.beside[beside[l]].data(), half[l], half[m])) back = other;
-    beside[m] = t, s_.beside[t][l] = other;
-    mesh_.triangles.push_back(half), s_.beside.push_back(beside);
+    beside[m] = t;
+    s_.beside[t][l] = other;
+    mesh_.triangles.push_back(half);
+    s_.beside.push_back(beside);
     return other;
   }
   bool shares(std::uint32_t t, std::ptrdiff_t k, std::uint32_t a, std::uint32_t b) const {
@@ -145,7 +150,10 @@ class CrossingPairs {
   void update(const std::vector<std::uint32_t>& moved) {
     const auto in = [&](std::uint32_t t) { return std::binary_search(moved.begin(), moved.end(), t); };
     std::erase_if(pairs_, [&](const auto& pair) { return in(pair.first) || in(pair.second); });
-    for (const auto t : moved) index_.erase(t), index_.insert(t, box(t));
+    for (const auto t : moved) {
+      index_.erase(t);
+      index_.insert(t, box(t));
+    }
     for (const auto t : moved) {
       near_.clear();
       index_.find(index_.box(t), near_);

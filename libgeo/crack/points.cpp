@@ -141,14 +141,20 @@ PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   // the plane.
   using Long = long double;
   Long u[3], v[3], wa[3], wb[3];
-  for (int i = 0; i < 3; ++i)
-    u[i] = Long(q[i]) - p[i], v[i] = Long(r[i]) - p[i], wa[i] = Long(a[i]) - p[i], wb[i] = Long(b[i]) - p[i];
+  for (int i = 0; i < 3; ++i) {
+    u[i] = Long(q[i]) - p[i];
+    v[i] = Long(r[i]) - p[i];
+    wa[i] = Long(a[i]) - p[i];
+    wb[i] = Long(b[i]) - p[i];
+  }
   Long da = 0, db = 0, size_a = 0, size_b = 0;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const Long x = u[j] * v[k], y = u[k] * v[j], n = x - y, m = std::abs(x) + std::abs(y);
-    da += n * wa[i], db += n * wb[i];
-    size_a += m * std::abs(wa[i]), size_b += m * std::abs(wb[i]);
+    da += n * wa[i];
+    db += n * wb[i];
+    size_a += m * std::abs(wa[i]);
+    size_b += m * std::abs(wb[i]);
   }
   // t = d_a / (d_a − d_b), d_x = (q − p) × (r − p) · (x − p). Each term of d passes through at most
   // 12 roundings of 2⁻⁶⁴; the error of t follows from those of d_a and d_b.

@@ -42,7 +42,10 @@ class Points {
 
   /// Reserves memory.
   void reserve(std::size_t count) {
-    near_.reserve(count), error_.reserve(count), definition_.reserve(count), definitions_.reserve(count);
+    near_.reserve(count);
+    error_.reserve(count);
+    definition_.reserve(count);
+    definitions_.reserve(count);
   }
   /// Number of points.
   std::size_t size() const { return near_.size(); }

@@ -66,7 +66,10 @@ class RadialOrderTest {
       const auto& v = is_new ? edit_.new_faces[f.value - complex_.face_count()].v : complex_.face(f).v;
       if (is_new) fault.faces.push_back(f.value - complex_.face_count());
       for (const VertexId c : v)
-        if (c != a && c != b) apex.push_back(point(c)), touched |= is_moved(c);
+        if (c != a && c != b) {
+          apex.push_back(point(c));
+          touched |= is_moved(c);
+        }
     }
     return !touched || in_radial_order(point(a), point(b), apex) ? Fault{} : fault;
   }

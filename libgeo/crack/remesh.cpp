@@ -69,7 +69,10 @@ class Remesher {
   bool apply(LocalEdit& local) {
     const bool allowed = !options_.may_sweep || std::all_of(local.swept.begin(), local.swept.end(), options_.may_sweep);
     const auto delta = allowed ? crack::try_commit(k_, local, delta_) : std::nullopt;
-    if (!delta) return ++stats_.refused, false;
+    if (!delta) {
+      ++stats_.refused;
+      return false;
+    }
     for (const FaceId f : delta->new_faces) {
       queue(f);
       for (int e = 0; e < 3; ++e)
@@ -97,7 +100,10 @@ class Remesher {
       // The deviation is largest at the edge's midpoint.
       const Vec3 middle = 0.5 * (c[e] + c[(e + 1) % 3]);
       if (k_.face(f).crack > 0 && !stays_close(*local, middle)) continue;
-      if (apply(*local)) return ++stats_.flips, true;
+      if (apply(*local)) {
+        ++stats_.flips;
+        return true;
+      }
     }
     return false;
   }
@@ -125,7 +131,8 @@ class Remesher {
         if (!stays_close(*local, k_.point(from))) continue;
         if (!apply(*local)) continue;
         contacts_.omit(from);
-        return ++stats_.collapses, true;
+        ++stats_.collapses;
+        return true;
       }
     return false;
   }
@@ -143,7 +150,8 @@ class Remesher {
         const auto t = k_.corners(g);
         const int at = corner_at(k_.face(g), v);
         const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]);
-        sum += t[(at + 1) % 3] + t[(at + 2) % 3], weight += 2;
+        sum += t[(at + 1) % 3] + t[(at + 2) % 3];
+        weight += 2;
         normal += normal.dot(n) < 0 ? Vec3(-n) : n;
       }
       const Vec3 n = normal.normalized(), to = sum / weight - p;
@@ -170,7 +178,10 @@ class Remesher {
         if (after >= 0.9 * before) continue;
         auto local = crack::relocate(k_, v, goal);
         if (!stays_close(local, p)) continue;
-        if (apply(local)) return ++stats_.moves, true;
+        if (apply(local)) {
+          ++stats_.moves;
+          return true;
+        }
       }
     }
     return false;
@@ -237,9 +248,13 @@ CrackDelta remesh(Complex& complex, std::span<const FaceId> region, std::span<Fr
       complex, fronts, progress, [&] { return Remesher(complex, fronts, options, done, progress).run(region); });
   done.seconds = watch.lap();
   if (stats) {
-    stats->faces += done.faces, stats->flips += done.flips, stats->collapses += done.collapses,
-        stats->moves += done.moves;
-    stats->divisions += done.divisions, stats->refused += done.refused, stats->seconds += done.seconds;
+    stats->faces += done.faces;
+    stats->flips += done.flips;
+    stats->collapses += done.collapses;
+    stats->moves += done.moves;
+    stats->divisions += done.divisions;
+    stats->refused += done.refused;
+    stats->seconds += done.seconds;
   }
   return delta;
 }

@@ -107,7 +107,10 @@ class Roughener {
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     std::unordered_map<VertexId, double> distance;
     for (const VertexId v : vertices)
-      if (!free.count(v)) distance[v] = 0, queue.push({0, v});
+      if (!free.count(v)) {
+        distance[v] = 0;
+        queue.push({0, v});
+      }
     while (!queue.empty()) {
       const auto [d, v] = queue.top();
       queue.pop();
@@ -205,7 +208,10 @@ class Roughener {
           break;
         }
       }
-    for (const Move& move : moves) ++stats_.moves, stats_.lowered += !move.complete;
+    for (const Move& move : moves) {
+      ++stats_.moves;
+      stats_.lowered += !move.complete;
+    }
   }
 
   Complex& k_;

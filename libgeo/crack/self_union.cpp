@@ -35,7 +35,10 @@ Vec3 point_inside(const TriangleMesh& cell) {
     return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
   };
   for (std::size_t t = 0; t < cell.triangles.size(); ++t)
-    if (const double area = doubled(t).squaredNorm(); area > most) most = area, largest = t;
+    if (const double area = doubled(t).squaredNorm(); area > most) {
+      most = area;
+      largest = t;
+    }
   const Vec3 from = (corner(largest, 0) + corner(largest, 1) + corner(largest, 2)) / 3;
   const Vec3 along = -doubled(largest).stableNormalized();
   double nearest = bounding_box(cell).diagonal();
@@ -97,12 +100,15 @@ crack::PairedSurface boundary_of(const Complex& complex, const std::vector<std::
   const auto number = [](Side s) { return 2 * s.face.index() + s.which; };
   for (std::uint32_t f = 0; f < in.size(); ++f)
     for (std::uint8_t w : {0, 1})
-      if (complex.alive(FaceId(f)) && in[f][w] != 0)
-        triangle_of[number({FaceId(f), w})] = static_cast<std::uint32_t>(sides.size()), sides.push_back({FaceId(f), w});
+      if (complex.alive(FaceId(f)) && in[f][w] != 0) {
+        triangle_of[number({FaceId(f), w})] = static_cast<std::uint32_t>(sides.size());
+        sides.push_back({FaceId(f), w});
+      }
   std::vector<std::uint32_t> index(complex.surface_vertex_count(), ~0u);
   std::vector<SurfaceVertexId> vertex_of;
   crack::PairedSurface surface{mesh_of_sides(complex, sides, index, vertex_of), {}};
-  surface.mesh.patch.clear(), surface.mesh.source.clear();
+  surface.mesh.patch.clear();
+  surface.mesh.source.clear();
   surface.beside.resize(sides.size());
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -122,7 +128,8 @@ TriangleMesh self_union(const TriangleMesh& mesh, const CrackOptions& options, S
   Complex complex = Complex::from_skin(box_around(bounding_box(mesh)));
   require_resolution(mesh, options.clearance * complex.extent().diagonal());
   TriangleMesh bare;
-  bare.vertices = mesh.vertices, bare.triangles = mesh.triangles;
+  bare.vertices = mesh.vertices;
+  bare.triangles = mesh.triangles;
   insert_sheet(complex, bare, 1, options);
   const Pieces cells = find_pieces(complex);
   const auto solid = solid_cells(complex, cells, mesh);

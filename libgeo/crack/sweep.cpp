@@ -26,8 +26,11 @@ class StripBuilder {
   // The index of position p; a new point where there is none.
   std::uint32_t point(const Vec3& p, bool fixed) {
     std::uint32_t& index = indices_[p];
-    if (index == ~0u)
-      index = static_cast<std::uint32_t>(strip.points.size()), strip.points.push_back(p), strip.fixed.push_back(false);
+    if (index == ~0u) {
+      index = static_cast<std::uint32_t>(strip.points.size());
+      strip.points.push_back(p);
+      strip.fixed.push_back(false);
+    }
     if (fixed) strip.fixed[index] = true;
     return index;
   }

@@ -41,7 +41,11 @@ void Triangulator::turn_to(int t, int edge) {
   if (edge == 0) return;
   Tri& x = tri_[static_cast<std::size_t>(t)];
   const Tri y = x;
-  for (int k = 0; k < 3; ++k) x.v[k] = y.v[(k + edge) % 3], x.n[k] = y.n[(k + edge) % 3], x.e[k] = y.e[(k + edge) % 3];
+  for (int k = 0; k < 3; ++k) {
+    x.v[k] = y.v[(k + edge) % 3];
+    x.n[k] = y.n[(k + edge) % 3];
+    x.e[k] = y.e[(k + edge) % 3];
+  }
 }
 
 // Replaces t's neighbour `from` by `to`.
@@ -60,7 +64,10 @@ void Triangulator::split_edge(int t, int edge, int p) {
   const int t2 = static_cast<int>(tri_.size());
   tri_.push_back({});
   int u2 = -1;
-  if (u >= 0) u2 = static_cast<int>(tri_.size()), tri_.push_back({});
+  if (u >= 0) {
+    u2 = static_cast<int>(tri_.size());
+    tri_.push_back({});
+  }
   {
     Tri &x = tri_[static_cast<std::size_t>(t)], &y = tri_[static_cast<std::size_t>(t2)];
     const int b = x.v[1], c = x.v[2];
@@ -179,7 +186,8 @@ void Triangulator::insert(int p) {
         if (x.n[k] < 0) throw GeometryError("a point of a face lies outside of it");
         next = x.n[k];
       } else if (side == 0) {
-        on = k, ++zeros;
+        on = k;
+        ++zeros;
       }
     }
     if (next >= 0) {
@@ -233,7 +241,10 @@ Triangulator::Departure Triangulator::leave(int a, int b) const {
     const int sp = side(p), sq = side(q);
     if (sp == 0 && is_ahead(a, b, p)) found.ahead = p;
     if (sq == 0 && is_ahead(a, b, q)) found.ahead = q;
-    if (sp < 0 && sq > 0) found.through = t, found.edge = (k + 1) % 3;
+    if (sp < 0 && sq > 0) {
+      found.through = t;
+      found.edge = (k + 1) % 3;
+    }
     return found.through >= 0 || found.ahead >= 0;
   });
   return found;
@@ -397,7 +408,11 @@ void Triangulator::triangulate(const std::array<PointIndex, 3>& corner, std::spa
                                const Canonicalize& canonicalize, std::vector<Child>& out) {
   std::tie(axis_, sign_) = projection_of(points_, corner);
   if (sign_ == 0) throw GeometryError("a triangle without area was met");
-  local_.clear(), edges_.clear(), at_.clear(), tri_.clear(), lines_.clear();
+  local_.clear();
+  edges_.clear();
+  at_.clear();
+  tri_.clear();
+  lines_.clear();
   for (int k = 0; k < 3; ++k) add_vertex(corner[k], corner_bits(k));
   tri_.push_back({{0, 1, 2}, {-1, -1, -1}, {0, 1, 2}});
   at_[0] = at_[1] = at_[2] = 0;

@@ -34,7 +34,9 @@ void WindingNumber::add_node(std::uint32_t first, std::uint32_t end) {
   double weight = 0;
   for (auto t = first; t < end; ++t) {
     const Vec3 area = area_vector(triangles_[t]), at = middle(triangles_[t]);
-    node.area += area, node.centroid += area.norm() * at, weight += area.norm();
+    node.area += area;
+    node.centroid += area.norm() * at;
+    weight += area.norm();
     box.add(at);
   }
   if (weight > 0)
@@ -50,7 +52,8 @@ void WindingNumber::add_node(std::uint32_t first, std::uint32_t end) {
     const auto half = first + (end - first) / 2;
     std::nth_element(triangles_.begin() + first, triangles_.begin() + half, triangles_.begin() + end,
                      [&](const auto& s, const auto& t) { return middle(s)[axis] < middle(t)[axis]; });
-    add_node(first, half), add_node(half, end);
+    add_node(first, half);
+    add_node(half, end);
   }
   nodes_[index].next = static_cast<std::uint32_t>(nodes_.size());
 }

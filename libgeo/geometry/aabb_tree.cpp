@@ -85,7 +85,7 @@ void fill_groups(const Box3* boxes, std::span<const std::uint32_t> order, const 
       auto full = hn::FirstN(d, count - std::min(count, at));
       for (int axis = 0; axis < 3; ++axis) {
         const auto from = hn::Load(number, first + at);
-        lo[axis] = hn::GatherIndex(d, boxes->lo.data() + axis, from),
+        lo[axis] = hn::GatherIndex(d, boxes->lo.data() + axis, from);
         hi[axis] = hn::GatherIndex(d, boxes->hi.data() + axis, from);
         full = hn::And(full, hn::Le(lo[axis], hi[axis]));
       }
@@ -93,23 +93,27 @@ void fill_groups(const Box3* boxes, std::span<const std::uint32_t> order, const 
         const auto origin = hn::Set(d, middle[axis]);
         const auto low = hn::Min(hn::Max(hn::Sub(lo[axis], origin), hn::Neg(largest)), largest),
                    high = hn::Min(hn::Max(hn::Sub(hi[axis], origin), hn::Neg(largest)), largest);
-        hn::Store(hn::DemoteTo(f, low), f, group.lo[axis] + at),
-            hn::Store(hn::DemoteTo(f, high), f, group.hi[axis] + at);
+        hn::Store(hn::DemoteTo(f, low), f, group.lo[axis] + at);
+        hn::Store(hn::DemoteTo(f, high), f, group.hi[axis] + at);
       }
       if (hn::AllTrue(d, full)) continue;
       alignas(64) double used[width];
       hn::Store(hn::IfThenElseZero(full, largest), d, used);
       for (std::size_t k = 0; k < hn::Lanes(d); ++k)
-        for (int axis = 0; axis < 3 && used[k] == 0; ++axis)
-          group.lo[axis][at + k] = INFINITY, group.hi[axis][at + k] = -INFINITY;
+        for (int axis = 0; axis < 3 && used[k] == 0; ++axis) {
+          group.lo[axis][at + k] = INFINITY;
+          group.hi[axis][at + k] = -INFINITY;
+        }
     }
     const hn::CappedTag<float, AabbTree::width> all;
     for (int axis = 0; axis < 3; ++axis) {
       auto lo = hn::Load(all, group.lo[axis]), hi = hn::Load(all, group.hi[axis]);
-      for (std::size_t at = hn::Lanes(all); at < width; at += hn::Lanes(all))
-        lo = hn::Min(lo, hn::Load(all, group.lo[axis] + at)), hi = hn::Max(hi, hn::Load(all, group.hi[axis] + at));
-      levels[1][b / width].lo[axis][b % width] = hn::GetLane(hn::MinOfLanes(all, lo)),
-                                        levels[1][b / width].hi[axis][b % width] = hn::GetLane(hn::MaxOfLanes(all, hi));
+      for (std::size_t at = hn::Lanes(all); at < width; at += hn::Lanes(all)) {
+        lo = hn::Min(lo, hn::Load(all, group.lo[axis] + at));
+        hi = hn::Max(hi, hn::Load(all, group.hi[axis] + at));
+      }
+      levels[1][b / width].lo[axis][b % width] = hn::GetLane(hn::MinOfLanes(all, lo));
+      levels[1][b / width].hi[axis][b % width] = hn::GetLane(hn::MaxOfLanes(all, hi));
     }
   }
 }
@@ -138,7 +142,8 @@ void hilbert_positions(AabbTree::Cells& cells) {
         x[0] = hn::Xor(x[0], hn::IfThenElse(inverted, lower, swapped));
       }
     }
-    x[1] = hn::Xor(x[1], x[0]), x[2] = hn::Xor(x[2], x[1]);
+    x[1] = hn::Xor(x[1], x[0]);
+    x[2] = hn::Xor(x[2], x[1]);
     auto gray = hn::Zero(d);  // the Gray code's last step
     for (std::uint32_t bit = highest; bit > 1; bit /= 2)
       gray = hn::Xor(gray, hn::IfThenElseZero(hn::TestBit(x[2], hn::Set(d, bit)), hn::Set(d, bit - 1)));
@@ -238,8 +243,10 @@ void sort_by_position(CurveOrder& boxes) {
 // Groups of empty boxes, enough for this number.
 std::vector<AabbTree::BoxGroup> empty_groups(std::size_t boxes) {
   AabbTree::BoxGroup none;
-  for (int axis = 0; axis < 3; ++axis)
-    std::fill_n(none.lo[axis], AabbTree::width, INFINITY), std::fill_n(none.hi[axis], AabbTree::width, -INFINITY);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(none.lo[axis], AabbTree::width, INFINITY);
+    std::fill_n(none.hi[axis], AabbTree::width, -INFINITY);
+  }
   return std::vector<AabbTree::BoxGroup>((boxes + AabbTree::width - 1) / AabbTree::width, none);
 }
 
@@ -250,7 +257,8 @@ bool extend(AabbTree::BoxGroup& group, std::uint32_t lane, const AabbTree::BoxGr
     float &own_lo = group.lo[axis][lane], &own_hi = group.hi[axis][lane];
     const float lo = other.lo[axis][other_lane], hi = other.hi[axis][other_lane];
     larger |= lo < own_lo || hi > own_hi;
-    own_lo = std::min(own_lo, lo), own_hi = std::max(own_hi, hi);
+    own_lo = std::min(own_lo, lo);
+    own_hi = std::max(own_hi, hi);
   }
   return larger;
 }
@@ -263,7 +271,10 @@ AabbTree::AabbTree(std::vector<Box3> boxes, std::span<const Triangle> triangles)
   CurveOrder sorted;
   sorted.reserve(boxes_.size());
   for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-    if (!boxes_[i].empty()) all.add(boxes_[i]), sorted.push_back({0, i});
+    if (!boxes_[i].empty()) {
+      all.add(boxes_[i]);
+      sorted.push_back({0, i});
+    }
   if (sorted.empty()) return;
   middle_ = 0.5 * all.lo + 0.5 * all.hi;
   // Cells are cubes, 2¹⁰ along the longest side: ten bits an axis.
@@ -288,7 +299,8 @@ AabbTree::AabbTree(std::vector<Box3> boxes, std::span<const Triangle> triangles)
   parallel_for(sorted.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto index = sorted[i].second;
-      order_[i] = index, place_[index] = static_cast<std::uint32_t>(i);
+      order_[i] = index;
+      place_[index] = static_cast<std::uint32_t>(i);
       for (std::size_t k = 0; k < 3 && !triangles.empty(); ++k)
         corners_[i / width].v[k][i % width] = triangles[index][k];
     }
@@ -375,7 +387,8 @@ std::optional<AabbTree::Pairs> AabbTree::pairs_up_to(std::size_t most, const std
       std::uint32_t queried[width] = {}, any = 0;  // lanes of each group of level 0
       for (std::size_t i = s * width * width; i < std::min(order_.size(), (s + 1) * width * width); ++i) {
         const auto bit = std::uint32_t(!marked || marked_places[i]) << i % width;
-        queried[i / width % width] |= bit, any |= bit;
+        queried[i / width % width] |= bit;
+        any |= bit;
       }
       if (any == 0) continue;
       const auto own = static_cast<std::uint32_t>(s);
@@ -390,7 +403,8 @@ std::optional<AabbTree::Pairs> AabbTree::pairs_up_to(std::size_t most, const std
           some[count++] = {std::min(i, j), std::max(i, j)};
       some.resize(count);
       if (filter) filter(some);
-      found[s].assign(some.begin(), some.end()), total += some.size();
+      found[s].assign(some.begin(), some.end());
+      total += some.size();
     }
   });
   if (total > most) return {};

@@ -30,20 +30,29 @@ Sums chunked_sum(const Indices& indices, const Add& add) {
 
 struct Centroids {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-  void operator+=(const Centroids& o) { from += o.from, to += o.to; }
+  void operator+=(const Centroids& o) {
+    from += o.from;
+    to += o.to;
+  }
 };
 
 Centroids centroids_of(const Indices& indices, const Points& from, const Points& to) {
-  auto m =
-      chunked_sum<Centroids>(indices, [&](Centroids& sum, std::uint32_t v) { sum.from += from[v], sum.to += to[v]; });
-  m.from /= double(indices.size()), m.to /= double(indices.size());
+  auto m = chunked_sum<Centroids>(indices, [&](Centroids& sum, std::uint32_t v) {
+    sum.from += from[v];
+    sum.to += to[v];
+  });
+  m.from /= double(indices.size());
+  m.to /= double(indices.size());
   return m;
 }
 
 // With x = from − centroid and y = to − centroid: Σ y xᵀ and Σ x xᵀ.
 struct Covariances {
   Mat3 cross = Mat3::Zero(), own = Mat3::Zero();
-  void operator+=(const Covariances& o) { cross += o.cross, own += o.own; }
+  void operator+=(const Covariances& o) {
+    cross += o.cross;
+    own += o.own;
+  }
 };
 
 void apply_map(const Indices& indices, const Centroids& m, const Mat3& map, const Points& from, Points& at) {
@@ -75,7 +84,8 @@ void apply_affine_fit(const Indices& indices, const Points& from, const Points& 
   const Centroids m = centroids_of(indices, from, to);
   const auto sums = chunked_sum<Covariances>(indices, [&](Covariances& sum, std::uint32_t v) {
     const Vec3 arm = from[v] - m.from;
-    sum.cross += (to[v] - m.to) * arm.transpose(), sum.own += arm * arm.transpose();
+    sum.cross += (to[v] - m.to) * arm.transpose();
+    sum.own += arm * arm.transpose();
   });
   const Mat3 map = linear_fit(sums.cross, sums.own);
   if (!map.allFinite() || !(map.determinant() > least_determinant && map.norm() < largest_norm))

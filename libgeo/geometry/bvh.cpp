@@ -43,7 +43,10 @@ struct TriangleBvh::Builder {
         continue;
       }
       Box3 box, spread;
-      for (auto i = job.begin; i < job.end; ++i) box.add(boxes[order[i]]), spread.add(centers[order[i]]);
+      for (auto i = job.begin; i < job.end; ++i) {
+        box.add(boxes[order[i]]);
+        spread.add(centers[order[i]]);
+      }
       nodes[job.node].box = box;
       if (job.end - job.begin <= leaf_size) {
         nodes[job.node].first = job.begin;
@@ -91,8 +94,10 @@ TriangleBvh::TriangleBvh(std::span<const std::array<Vec3, 3>> triangles)
   builder.build({0, 0, n}, nodes_, std::max(many, n) / shares, n < many ? nullptr : &deferred);
   std::vector<std::vector<Node>> below(deferred.size());
   parallel_for(deferred.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      below[k].emplace_back(), builder.build({0, deferred[k].begin, deferred[k].end}, below[k]);
+    for (std::size_t k = begin; k < end; ++k) {
+      below[k].emplace_back();
+      builder.build({0, deferred[k].begin, deferred[k].end}, below[k]);
+    }
   });
   for (std::size_t k = 0; k < deferred.size(); ++k) {
     const auto offset = static_cast<std::uint32_t>(nodes_.size() - 1);
@@ -152,8 +157,10 @@ TriangleBvh::Closest TriangleBvh::closest(const Vec3& p, double cutoff, double e
       const auto& t = corners_[order_[i]];
       const Vec3 c = closest_point_on_triangle(p, t[0], t[1], t[2]);
       const double d = (c - p).squaredNorm();
-      if (d < reach || (d == reach && (best.triangle == ~0u || order_[i] < best.triangle)))
-        reach = d, best = {order_[i], c, std::sqrt(d)};
+      if (d < reach || (d == reach && (best.triangle == ~0u || order_[i] < best.triangle))) {
+        reach = d;
+        best = {order_[i], c, std::sqrt(d)};
+      }
       if (enough >= 0 && d <= enough * enough) return {order_[i], c, std::min(std::sqrt(d), enough)};
     }
   }

@@ -143,7 +143,10 @@ std::optional<std::uint32_t> farthest(std::span<const Vec3> points, const Measur
   std::optional<std::uint32_t> best;
   double largest = 0;
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (const double m = measure(points[i]); m > largest) largest = m, best = i;
+    if (const double m = measure(points[i]); m > largest) {
+      largest = m;
+      best = i;
+    }
   return best;
 }
 

@@ -43,16 +43,17 @@ void orient_points(const double* corner, const double* normal, const double* per
       auto det = hn::Zero(d), permanent = det;
       for (int axis = 0; axis < 3; ++axis) {
         const auto x = hn::Sub(hn::LoadU(d, coordinates[axis] + 64 * word + k), hn::Set(d, corner[axis]));
-        det = hn::Add(det, hn::Mul(x, hn::Set(d, normal[axis]))),
+        det = hn::Add(det, hn::Mul(x, hn::Set(d, normal[axis])));
         permanent = hn::Add(permanent, hn::Mul(hn::Abs(x), hn::Set(d, permanents[axis])));
       }
       const auto bound = hn::Mul(hn::Set(d, orient3d_error), permanent);
       const auto sure =
           hn::And(hn::Gt(permanent, hn::Set(d, filter_smallest)), hn::Lt(permanent, hn::Set(d, filter_largest)));
-      over |= bits_of(hn::And(sure, hn::Gt(det, bound))) << k,
-          under |= bits_of(hn::And(sure, hn::Lt(det, hn::Neg(bound)))) << k;
+      over |= bits_of(hn::And(sure, hn::Gt(det, bound))) << k;
+      under |= bits_of(hn::And(sure, hn::Lt(det, hn::Neg(bound)))) << k;
     }
-    above[word] = over, below[word] = under;
+    above[word] = over;
+    below[word] = under;
   }
 }
 
@@ -71,7 +72,8 @@ void filtered_orientations(const std::array<Vec3, 3>& triangle, const double* co
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const double plus = u[j] * v[k], minus = u[k] * v[j];
-    normal[i] = plus - minus, permanents[i] = std::abs(plus) + std::abs(minus);
+    normal[i] = plus - minus;
+    permanents[i] = std::abs(plus) + std::abs(minus);
   }
   HWY_DYNAMIC_DISPATCH(orient_points)(triangle[0].data(), normal, permanents, coordinates, words, above, below);
 }

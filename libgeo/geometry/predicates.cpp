@@ -51,7 +51,10 @@ std::pair<int, int> projection_axis(const Vec3& a, const Vec3& b, const Vec3& c)
   int axis = 0;
   (b - a).cross(c - a).cwiseAbs().maxCoeff(&axis);
   int turn = orient2d(a, b, c, axis);
-  for (int tries = 0; tries < 2 && turn == 0; ++tries) axis = (axis + 1) % 3, turn = orient2d(a, b, c, axis);
+  for (int tries = 0; tries < 2 && turn == 0; ++tries) {
+    axis = (axis + 1) % 3;
+    turn = orient2d(a, b, c, axis);
+  }
   return {axis, turn};
 }
 

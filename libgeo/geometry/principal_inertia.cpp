@@ -7,7 +7,8 @@ namespace geo {
 
 PrincipalInertia::PrincipalInertia(const Mat3& inertia) {
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
-  axes = eigen.eigenvectors(), moments = eigen.eigenvalues();
+  axes = eigen.eigenvectors();
+  moments = eigen.eigenvalues();
 }
 
 Vec3 PrincipalInertia::angular_velocity(const Vec3& momentum, double least_moment) const {

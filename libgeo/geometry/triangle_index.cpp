@@ -129,7 +129,10 @@ TriangleIndex::Block& TriangleIndex::Level::find_or_add_block(const std::int64_t
 
 TriangleIndex::Range TriangleIndex::Level::cells_of(const Box3& box) const {
   Range r;
-  for (int i = 0; i < 3; ++i) r.lo[i] = floor_of(box.lo[i] / cell), r.hi[i] = floor_of(box.hi[i] / cell);
+  for (int i = 0; i < 3; ++i) {
+    r.lo[i] = floor_of(box.lo[i] / cell);
+    r.hi[i] = floor_of(box.hi[i] / cell);
+  }
   return r;
 }
 
@@ -192,7 +195,8 @@ TriangleIndex::QuantizedBox TriangleIndex::Level::quantize(const Box3& box, cons
     const auto round = [&](double x) {
       return static_cast<std::uint8_t>(std::clamp(256 * (x / cell - static_cast<double>(at[i])), 0.0, 255.0));
     };
-    result.lo[i] = round(box.lo[i]), result.hi[i] = round(box.hi[i]);
+    result.lo[i] = round(box.lo[i]);
+    result.hi[i] = round(box.hi[i]);
   }
   return result;
 }
@@ -218,8 +222,10 @@ void TriangleIndex::insert(std::uint32_t id, const Box3& box) {
       std::uint32_t added = free_;
       if (added != none)
         free_ = chunks_[added].next;
-      else
-        added = static_cast<std::uint32_t>(chunks_.size()), chunks_.emplace_back();
+      else {
+        added = static_cast<std::uint32_t>(chunks_.size());
+        chunks_.emplace_back();
+      }
       chunks_[added].next = first;
       std::fill(std::begin(chunks_[added].id), std::end(chunks_[added].id), none);
       first = added;
@@ -249,7 +255,8 @@ void TriangleIndex::erase(std::uint32_t id) {
       Chunk& chunk = chunks_[b];
       const auto entry = std::find(std::begin(chunk.id), std::end(chunk.id), id) - std::begin(chunk.id);
       if (entry == Chunk::size) continue;
-      chunk.id[entry] = first.id[last], chunk.box[entry] = first.box[last];
+      chunk.id[entry] = first.id[last];
+      chunk.box[entry] = first.box[last];
       break;
     }
     first.id[last] = none;

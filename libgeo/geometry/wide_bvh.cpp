@@ -38,7 +38,8 @@ struct Plane {
     const Vec3 u = a - origin, v = b - origin;
     for (int i = 0; i < 3; ++i) {
       const double x = u[(i + 1) % 3] * v[(i + 2) % 3], y = u[(i + 2) % 3] * v[(i + 1) % 3];
-      normal[i] = x - y, permanent[i] = std::abs(x) + std::abs(y);
+      normal[i] = x - y;
+      permanent[i] = std::abs(x) + std::abs(y);
     }
   }
   Vec3 origin;
@@ -140,9 +141,10 @@ void fill(const WideBvh& tree, const Vec3& p, const Vec3* ends, Packet& packet) 
       hn::Store(to, df, packet.end[axis] + s);
       hn::Store(lo, df, packet.lo[axis] + s);
       hn::Store(hi, df, packet.hi[axis] + s);
-      all_lo = hn::Min(all_lo, lo), all_hi = hn::Max(all_hi, hi);
+      all_lo = hn::Min(all_lo, lo);
+      all_hi = hn::Max(all_hi, hi);
     }
-    packet.all_lo[axis] = hn::GetLane(hn::MinOfLanes(df, all_lo)),
+    packet.all_lo[axis] = hn::GetLane(hn::MinOfLanes(df, all_lo));
     packet.all_hi[axis] = hn::GetLane(hn::MaxOfLanes(df, all_hi));
     packet.slabs_valid = packet.slabs_valid && packet.all_lo[axis] >= -2 && packet.all_hi[axis] <= 2;
   }
@@ -263,8 +265,10 @@ WideBvh::WideBvh(Corners corners, Order order) {
   const auto empty_level = [](std::size_t count) {
     Boxes none;
     for (int axis = 0; axis < 3; ++axis)
-      for (std::uint32_t lane = 0; lane < width; ++lane)
-        none.lo[axis][lane] = INFINITY, none.hi[axis][lane] = -INFINITY;
+      for (std::uint32_t lane = 0; lane < width; ++lane) {
+        none.lo[axis][lane] = INFINITY;
+        none.hi[axis][lane] = -INFINITY;
+      }
     return std::vector<Boxes>((count + width - 1) / width, none);
   };
   // Error bound of slabs. Box coordinates of at most 2 have an error of 2⁻²³ (1 + 2⁻²⁸).
@@ -284,13 +288,16 @@ WideBvh::WideBvh(Corners corners, Order order) {
     double from = INFINITY, to = -INFINITY;
     for (const Vec3& corner : t) {
       const double along = normal.cast<double>().dot((corner - middle_) * scale_);
-      from = std::min(from, along), to = std::max(to, along);
+      from = std::min(from, along);
+      to = std::max(to, along);
     }
     for (int axis = 0; axis < 3; ++axis) {
-      boxes.lo[axis][lane] = local(b.lo[axis], axis), boxes.hi[axis][lane] = local(b.hi[axis], axis);
+      boxes.lo[axis][lane] = local(b.lo[axis], axis);
+      boxes.hi[axis][lane] = local(b.hi[axis], axis);
       slabs.normal[axis][lane] = normal[axis];
     }
-    slabs.from[lane] = static_cast<float>(from - margin), slabs.to[lane] = static_cast<float>(to + margin);
+    slabs.from[lane] = static_cast<float>(from - margin);
+    slabs.to[lane] = static_cast<float>(to + margin);
   }
   while (levels_.size() < 2 || levels_.back().size() > 1) {
     const auto& below = levels_.back();
@@ -311,9 +318,10 @@ void WideBvh::blocked(Corners corners, Order order, const Vec3& p, std::span<con
 }
 
 void WideBvh::remove(std::uint32_t place) {
-  for (int axis = 0; axis < 3; ++axis)
-    levels_[0][place / width].lo[axis][place % width] = INFINITY,
-                                               levels_[0][place / width].hi[axis][place % width] = -INFINITY;
+  for (int axis = 0; axis < 3; ++axis) {
+    levels_[0][place / width].lo[axis][place % width] = INFINITY;
+    levels_[0][place / width].hi[axis][place % width] = -INFINITY;
+  }
 }
 
 void WideBvh::add_blocked(Corners corners, Order order, const Vec3& p, std::span<const Vec3> ends,

@@ -22,7 +22,10 @@ AdjacencyStore::AdjacencyStore(const AdjacencyStore& o)
 }
 
 void AdjacencyStore::swap(AdjacencyStore& o) noexcept {
-  locations_.swap(o.locations_), blocks_.swap(o.blocks_), released_.swap(o.released_), open_.swap(o.open_);
+  locations_.swap(o.locations_);
+  blocks_.swap(o.blocks_);
+  released_.swap(o.released_);
+  open_.swap(o.open_);
 }
 
 // A row in memory: ids, bits, lengths of paths, each aligned to four bytes.
@@ -149,7 +152,10 @@ void AdjacencyStore::Writer::set(std::size_t i, const AdjacencyRow& row) {
     const std::lock_guard lock(store_.mutex_);
     if (block_ != ~0u) store_.open_.push_back({block_, begin_, end_});
     const FreeWords free = store_.find_free_words(words);
-    block_ = free.block, begin_ = free.begin, end_ = free.end, words_ = store_.blocks_[block_].data();
+    block_ = free.block;
+    begin_ = free.begin;
+    end_ = free.end;
+    words_ = store_.blocks_[block_].data();
   }
   Location& location = store_.locations_[i];
   location.offset = block_ << block_shift | begin_;

@@ -42,7 +42,8 @@ std::size_t WithinSupport(const AdjacencyRow& row, std::uint32_t mask, std::uint
   if (count < lanes) {
     for (std::size_t k = 0; k < count; ++k) {
       const auto next = distance + AdjacencyRow::bound(bits[k]);
-      targets[found] = to[k], distances[found] = next;
+      targets[found] = to[k];
+      distances[found] = next;
       found += ((bits[k] & mask) != refused) & (next < unit_radius);
     }
     return found;
@@ -116,8 +117,10 @@ template <class D, class V>
 void Transpose(D d, V* v) {
   const hn::Repartition<std::uint64_t, D> dw;
   V pairs[16];
-  for (int k = 0; k < 16; k += 2)
-    pairs[k] = hn::InterleaveLower(d, v[k], v[k + 1]), pairs[k + 1] = hn::InterleaveUpper(d, v[k], v[k + 1]);
+  for (int k = 0; k < 16; k += 2) {
+    pairs[k] = hn::InterleaveLower(d, v[k], v[k + 1]);
+    pairs[k + 1] = hn::InterleaveUpper(d, v[k], v[k + 1]);
+  }
   const auto low = [&](V a, V b) {
     return hn::BitCast(d, hn::InterleaveLower(dw, hn::BitCast(dw, a), hn::BitCast(dw, b)));
   };
@@ -125,8 +128,10 @@ void Transpose(D d, V* v) {
     return hn::BitCast(d, hn::InterleaveUpper(dw, hn::BitCast(dw, a), hn::BitCast(dw, b)));
   };
   for (int k = 0; k < 16; k += 4) {
-    v[k] = low(pairs[k], pairs[k + 2]), v[k + 1] = high(pairs[k], pairs[k + 2]);
-    v[k + 2] = low(pairs[k + 1], pairs[k + 3]), v[k + 3] = high(pairs[k + 1], pairs[k + 3]);
+    v[k] = low(pairs[k], pairs[k + 2]);
+    v[k + 1] = high(pairs[k], pairs[k + 2]);
+    v[k + 2] = low(pairs[k + 1], pairs[k + 3]);
+    v[k + 3] = high(pairs[k + 1], pairs[k + 3]);
   }
   // Now the k-th block of v[4 r + c] is column 4 k + c of rows 4 r to 4 r + 3.
   for (int c = 0; c < 4; ++c) {
@@ -144,9 +149,11 @@ void Transpose(D d, V* v) {
 void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
   constexpr std::size_t all = BatchedSearch::lanes;
   std::uint32_t *node_end[all], *id_end[all], *distance_end[all];
-  for (std::size_t k = 0; k < all; ++k)
-    node_end[k] = s.found[k].node.data(), id_end[k] = s.found[k].id.data(),
+  for (std::size_t k = 0; k < all; ++k) {
+    node_end[k] = s.found[k].node.data();
+    id_end[k] = s.found[k].id.data();
     distance_end[k] = s.found[k].distance.data();
+  }
   // The queue is empty: its memory holds the list of nodes reached.
   std::uint32_t* const nodes = s.queue.data();
   std::size_t count = 0;
@@ -170,12 +177,14 @@ void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
   const hn::FixedTag<std::uint32_t, all> d;
   const auto zero = hn::Zero(d), far = hn::Set(d, BatchedSearch::far), radius = hn::Set(d, unit_radius);
   for (std::size_t first = 0; first < count; first += all) {
-    alignas(64) std::uint32_t ids[all] = {}, joined[all] = {};
+    alignas(64) std::uint32_t ids[all] = {};
+    joined[all] = {};
     hn::Vec<decltype(d)> distance[all];
     const std::size_t here = std::min(all, count - first);
     for (std::size_t n = 0; n < here; ++n) {
       const auto node = nodes[first + n];
-      ids[n] = graph.id(node), joined[n] = s.joined[node];
+      ids[n] = graph.id(node);
+      joined[n] = s.joined[node];
       s.joined[node] = 0;
       distance[n] = hn::Load(d, distances_of(node));
       hn::Store(far, d, distances_of(node));
@@ -191,7 +200,9 @@ void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
       hn::StoreU(hn::Compress(id, reached), d, id_end[k]);
       hn::StoreU(hn::Compress(hn::Or(distance[k], edge), reached), d, distance_end[k]);
       const auto found = hn::CountTrue(d, reached);
-      node_end[k] += found, id_end[k] += found, distance_end[k] += found;
+      node_end[k] += found;
+      id_end[k] += found;
+      distance_end[k] += found;
     }
   }
 #else
@@ -201,9 +212,13 @@ void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
     auto* const distance = distances_of(node);
     for (std::size_t k = 0; k < all; ++k) {
       const auto known = std::exchange(distance[k], BatchedSearch::far);
-      *node_end[k] = node, *id_end[k] = id, *distance_end[k] = known | (joined >> k & 1) << 31;
+      *node_end[k] = node;
+      *id_end[k] = id;
+      *distance_end[k] = known | (joined >> k & 1) << 31;
       const bool reached = (known < unit_radius) & (known > 0);
-      node_end[k] += reached, id_end[k] += reached, distance_end[k] += reached;
+      node_end[k] += reached;
+      id_end[k] += reached;
+      distance_end[k] += reached;
     }
   }
 #endif
@@ -244,8 +259,11 @@ void BatchedSearch::run(const LocalGraph& graph, std::span<const std::uint32_t> 
     scratch_.queued.resize(n, 0);
     scratch_.queue.resize(std::bit_ceil(n + lanes));
     scratch_.joined.resize(n, 0);
-    for (auto& found : scratch_.found)
-      found.node.resize(n + lanes), found.id.resize(n + lanes), found.distance.resize(n + lanes);
+    for (auto& found : scratch_.found) {
+      found.node.resize(n + lanes);
+      found.id.resize(n + lanes);
+      found.distance.resize(n + lanes);
+    }
   }
   scratch_.touched.resize((n + 63) / 64 * 64, 0);
   Lanes* const distances = scratch_.distances.data();

@@ -115,7 +115,8 @@ class Search {
       const bool enters = !faces_at_[at].empty();
       whole = enters && 2 * half <= support_ ? depth : none;
       if (!enters) return false;
-      depth_of_cube = at, is_new = true;
+      depth_of_cube = at;
+      is_new = true;
       if (depth <= depth_of_region) {
         regions_.push_back({middle, half});
         depth_of_region = half <= region_size * support_ ? depth : none;
@@ -161,9 +162,12 @@ class Search {
     for (std::size_t k = 0; k < count; ++k) {
       const auto id = suspects_[k].id;
       if (far_edges_only_[k] && !graph_.store(id).has_edge_only_entries(GraphStorage::index_of(id))) continue;
-      found_.ids.push_back(id), found_.slabs.push_back(regions_[cubes_[suspects_[k].cube].region].slab);
+      found_.ids.push_back(id);
+      found_.slabs.push_back(regions_[cubes_[suspects_[k].cube].region].slab);
     }
-    suspects_.clear(), cubes_.clear(), cube_faces_.clear();
+    suspects_.clear();
+    cubes_.clear();
+    cube_faces_.clear();
   }
 
   const Slab& slab_of(Region& region) {
@@ -201,16 +205,21 @@ Slab::Slab(std::span<const Corners> faces, std::span<const std::uint32_t> indice
     : origin(origin) {
   double largest = -1, far = reach;
   for (const auto f : indices)
-    if (const Vec3 n = (faces[f][1] - faces[f][0]).cross(faces[f][2] - faces[f][0]); n.squaredNorm() > largest)
-      largest = n.squaredNorm(), normal = n;
+    if (const Vec3 n = (faces[f][1] - faces[f][0]).cross(faces[f][2] - faces[f][0]); n.squaredNorm() > largest) {
+      largest = n.squaredNorm();
+      normal = n;
+    }
   for (const auto f : indices)
     for (const Vec3& corner : faces[f]) {
       const double h = height(corner);
-      from = std::min(from, h), to = std::max(to, h), far = std::max(far, (corner - origin).lpNorm<Eigen::Infinity>());
+      from = std::min(from, h);
+      to = std::max(to, h);
+      far = std::max(far, (corner - origin).lpNorm<Eigen::Infinity>());
     }
   // A height takes six operations, each with an error of 2⁻⁵³ of a sum no larger than this.
   const double rounding = 0x1p-49 * normal.lpNorm<1>() * far;
-  from -= rounding, to += rounding;
+  from -= rounding;
+  to += rounding;
   // Rounded up: norm() is off by a few ulps (2⁻⁵³) at most.
   length = normal.norm() * (1 + 1e-12);
 }

@@ -36,7 +36,10 @@ struct Pair {
 CutPairs rows_of(std::span<const Pair> pairs, IdNumbering& ids, const std::vector<bool>& above) {
   CutPairs cut;
   std::vector<std::uint32_t> next(ids.size(), 0);  // number of entries, then the index of the next one
-  for (const Pair& p : pairs) ++next[p.a], ++next[p.b];
+  for (const Pair& p : pairs) {
+    ++next[p.a];
+    ++next[p.b];
+  }
   std::uint32_t sum = 0;
   ids.each([&](std::uint32_t id, std::uint32_t k) {
     const auto count = std::exchange(next[k], sum);
@@ -45,7 +48,10 @@ CutPairs rows_of(std::span<const Pair> pairs, IdNumbering& ids, const std::vecto
   });
   std::vector<CutPairs::Entry> mixed(sum);
   auto next_mixed = next;
-  for (const Pair& p : pairs) mixed[next_mixed[p.a]++] = {p.b, p.bits}, mixed[next_mixed[p.b]++] = {p.a, p.bits};
+  for (const Pair& p : pairs) {
+    mixed[next_mixed[p.a]++] = {p.b, p.bits};
+    mixed[next_mixed[p.b]++] = {p.a, p.bits};
+  }
   cut.entries.resize(sum);
   for (const auto& row : cut.rows)
     for (auto e = row.begin; e < row.end; ++e) cut.entries[next[mixed[e].to]++] = {row.id, mixed[e].bits};

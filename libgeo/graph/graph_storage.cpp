@@ -43,7 +43,10 @@ class RowChecker {
  public:
   RowChecker(const NodeSet& nodes, const GraphStorage& graph, const GraphStorage::Arrays& arrays)
       : nodes_(nodes), graph_(graph), in_(arrays), ends_(nodes.size()), next_(nodes.size()) {
-    for (std::size_t i = 0, sum = 0; i < nodes.size(); ++i) next_[i] = sum, ends_[i] = sum += in_.count[i];
+    for (std::size_t i = 0, sum = 0; i < nodes.size(); ++i) {
+      next_[i] = sum;
+      ends_[i] = sum += in_.count[i];
+    }
     if (!ends_.empty() && ends_.back() != in_.to.size()) throw InputError("the graph's rows do not fit together");
   }
 
@@ -142,7 +145,8 @@ void GraphStorage::add_half_edge(std::uint32_t from, std::uint32_t to, std::uint
 bool GraphStorage::add(const NodeSet& nodes, std::uint32_t i, std::uint32_t j) {
   if (has(i, j)) return false;
   const std::uint16_t bound = AdjacencyRow::bits_of_bound(warped(nodes, i, j));
-  add_half_edge(i, j, bound), add_half_edge(j, i, bound);
+  add_half_edge(i, j, bound);
+  add_half_edge(j, i, bound);
   largest_support_ = std::max({largest_support_, radius(nodes, i), radius(nodes, j)});
   longest_edge_ =
       std::max({longest_edge_, largest_support_, std::sqrt(squared_distance(position(nodes, i), position(nodes, j)))});
@@ -194,7 +198,8 @@ void GraphStorage::lower_bounds(const NodeSet& nodes, NodeId i) {
 
 bool GraphStorage::remove(std::uint32_t i, std::uint32_t j) {
   if (!has(i, j)) return false;
-  drop(i, {&j, 1}), drop(j, {&i, 1});
+  drop(i, {&j, 1});
+  drop(j, {&i, 1});
   return true;
 }
 
@@ -221,7 +226,8 @@ void GraphStorage::drop(std::uint32_t id, std::span<const std::uint32_t> others)
   for (k = 0; k < whole.to.size(); ++k) {
     while (next != others.end() && *next < whole.to[k]) ++next;
     if (next != others.end() && *next == whole.to[k] && !AdjacencyRow::is_neighbor(whole.bits[k])) continue;
-    to_left.push_back(whole.to[k]), bits_left.push_back(whole.bits[k]);
+    to_left.push_back(whole.to[k]);
+    bits_left.push_back(whole.bits[k]);
   }
   rows.set(index_of(id), {to_left, bits_left, paths});
 }
@@ -238,7 +244,10 @@ std::uint32_t GraphStorage::components(std::vector<std::uint32_t>& component) co
       const NodeId at(stack.back());
       stack.pop_back();
       for (const NodeId j : edges(at))
-        if (component[j.index()] == ~0u) component[j.index()] = count, stack.push_back(j.value);
+        if (component[j.index()] == ~0u) {
+          component[j.index()] = count;
+          stack.push_back(j.value);
+        }
     }
     ++count;
   }
@@ -253,16 +262,23 @@ GraphStorage GraphStorage::from_edges(const NodeSet& nodes, std::vector<std::pai
   graph.edges_ = edges.size();
   std::vector<std::uint32_t> ends(n + 1, 0);
   for (const auto& [i, j] : edges) {
-    ++ends[i.index()], ++ends[j.index()];
+    ++ends[i.index()];
+    ++ends[j.index()];
     graph.longest_edge_ =
         std::max(graph.longest_edge_, squared_distance(nodes.position[i.index()], nodes.position[j.index()]));
   }
   graph.longest_edge_ = std::sqrt(graph.longest_edge_);
   for (const double r : nodes.radius) graph.largest_support_ = std::max(graph.largest_support_, r);
   graph.longest_edge_ = std::max(graph.longest_edge_, graph.largest_support_);
-  for (std::size_t i = 0, sum = 0; i <= n; ++i) sum += ends[i], ends[i] = static_cast<std::uint32_t>(sum);
+  for (std::size_t i = 0, sum = 0; i <= n; ++i) {
+    sum += ends[i];
+    ends[i] = static_cast<std::uint32_t>(sum);
+  }
   std::vector<std::uint32_t> to(2 * edges.size());
-  for (const auto& [i, j] : edges) to[--ends[i.index()]] = j.value, to[--ends[j.index()]] = i.value;
+  for (const auto& [i, j] : edges) {
+    to[--ends[i.index()]] = j.value;
+    to[--ends[j.index()]] = i.value;
+  }
   std::vector<std::pair<NodeId, NodeId>>().swap(edges);
   parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
     AdjacencyStore::Writer rows(graph.rows_);

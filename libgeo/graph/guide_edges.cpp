@@ -47,7 +47,10 @@ void add_guide_edges(const NodeSet& nodes, std::span<const std::vector<std::uint
   auto guide = GraphStorage::guide_id(graph.guides().size() - static_cast<std::uint32_t>(visible.size()));
   std::vector<std::pair<std::uint32_t, std::uint32_t>> half_edges;
   for (const auto& ids : visible) {
-    for (const auto id : ids) half_edges.push_back({guide, id}), half_edges.push_back({id, guide});
+    for (const auto id : ids) {
+      half_edges.push_back({guide, id});
+      half_edges.push_back({id, guide});
+    }
     ++guide;
   }
   std::sort(half_edges.begin(), half_edges.end());

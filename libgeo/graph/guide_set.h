@@ -39,7 +39,8 @@ class GuideSet {
   /// Appends a guide.
   void add(const Guide& guide) {
     if (position_.empty()) grid_ = NodeGrid(guide.radius > 0 ? 0.5 * guide.radius : 1.0);
-    position_.push_back(guide.position), radius_.push_back(guide.radius);
+    position_.push_back(guide.position);
+    radius_.push_back(guide.radius);
     largest_ = std::max(largest_, guide.radius);
     grid_.insert(position_, size() - 1);
   }

@@ -12,8 +12,10 @@ namespace geo {
 inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
   const auto number = numbers_.add(id);
   if (number == discovered_) {
-    if (discovered_ == discoveries_.size())
-      discoveries_.resize(2 * discovered_ + 64), queued_.resize(discoveries_.size(), 0);
+    if (discovered_ == discoveries_.size()) {
+      discoveries_.resize(2 * discovered_ + 64);
+      queued_.resize(discoveries_.size(), 0);
+    }
     discoveries_[discovered_++] = {id, unit_radius, 0, 0};
   }
   return number;
@@ -28,8 +30,11 @@ void LocalGraph::explore(const GraphStorage& graph, std::span<const std::uint32_
   for (const auto id : sources) discover(id);
   std::size_t used = 0, tail = 0;
   if (queue_.size() < count) queue_.resize(2 * count);
-  for (std::uint32_t number = 0; number < count; ++number)
-    queue_[tail++] = number, discoveries_[number].distance = 0, queued_[number] = 1;
+  for (std::uint32_t number = 0; number < count; ++number) {
+    queue_[tail++] = number;
+    discoveries_[number].distance = 0;
+    queued_[number] = 1;
+  }
   const auto may_lead_on = [&](std::uint32_t number) {
     const Discovery& d = discoveries_[number];
     return d.distance + AdjacencyRow::bound(graph.store(d.id).lowest_bound(GraphStorage::index_of(d.id))) < unit_radius;
@@ -74,8 +79,11 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
   const std::size_t count = from.end - from.begin;
   const auto* targets = targets_.data() + from.begin;
   if (length_.size() < count + 16) {
-    squared_.resize(2 * count + 16, 1), radius_.resize(2 * count + 16, 1), length_.resize(2 * count + 16);
-    to_.resize(length_.size()), class_.resize(length_.size());
+    squared_.resize(2 * count + 16, 1);
+    radius_.resize(2 * count + 16, 1);
+    length_.resize(2 * count + 16);
+    to_.resize(length_.size());
+    class_.resize(length_.size());
   }
   const Point& p = points_[local_[number]];
   for (std::size_t k = 0; k < count; ++k) {
@@ -92,7 +100,8 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
   const auto limit = unit_radius - from.distance;
   std::uint32_t shortest = unit_radius, longest = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    shortest = std::min(shortest, length_[k]), longest = std::max(longest, length_[k]);
+    shortest = std::min(shortest, length_[k]);
+    longest = std::max(longest, length_[k]);
     class_[k] = length_[k] < limit ? length_[k] >> class_shift : classes;
   }
   std::array<std::uint32_t, classes + 1> begin{};
@@ -112,16 +121,22 @@ void LocalGraph::measure(std::uint32_t number, bool source) {
 void LocalGraph::gather(const NodeSet& nodes, const GraphStorage& graph, std::span<const std::uint32_t> sources) {
   explore(graph, sources);
   nodes_ = 0;
-  id_.resize(discovered_), local_.resize(discovered_), points_.resize(discovered_), number_.resize(discovered_);
+  id_.resize(discovered_);
+  local_.resize(discovered_);
+  points_.resize(discovered_);
+  number_.resize(discovered_);
   std::uint32_t local = 0;
   numbers_.each([&](std::uint32_t id, std::uint32_t number) {
-    id_[local] = id, number_[local] = number, local_[number] = local;
+    id_[local] = id;
+    number_[local] = number;
+    local_[number] = local;
     const Vec3& p = graph.position(nodes, id);
     points_[local] = {p.x(), p.y(), p.z(), graph.radius(nodes, id)};
     nodes_ += !GraphStorage::is_guide(id);
     ++local;
   });
-  first_.assign(1, 0), limit_.clear();
+  first_.assign(1, 0);
+  limit_.clear();
   edge_only_.assign(sources.size(), 0);
   for (const auto number : number_) measure(number, number < sources.size());
 }

@@ -19,8 +19,10 @@ using Group = std::span<std::uint32_t>;  // indices into `ids`
 void divide(const NodeSet& nodes, std::span<const std::uint32_t> ids, Group all, std::vector<Group>& groups) {
   Box3 box;
   double support = 0;
-  for (const auto index : all)
-    box.add(nodes.position[ids[index]]), support = std::max(support, nodes.radius[ids[index]]);
+  for (const auto index : all) {
+    box.add(nodes.position[ids[index]]);
+    support = std::max(support, nodes.radius[ids[index]]);
+  }
   Eigen::Index axis = 0;
   const Vec3 size = box.hi - box.lo, middle = box.center();
   const auto second =

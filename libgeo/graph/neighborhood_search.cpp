@@ -53,11 +53,14 @@ class NeighborhoodSearch::Scratch {
 // The edges uv that end shortest paths from a source: d(u) + length(uv) = d(v).
 void NeighborhoodSearch::Scratch::find_last_edges(std::uint32_t source, const BatchedSearch::Distances& found) {
   distance_.resize(std::max<std::size_t>(distance_.size(), local.size()), 0);
-  plain_.resize(distance_.size()), first_edge_.resize(distance_.size());
+  plain_.resize(distance_.size());
+  first_edge_.resize(distance_.size());
   last_edges_.assign(1, {});
   for (std::size_t e = 0; e < found.node.size(); ++e) {
     const auto node = found.node[e];
-    distance_[node] = found.distance[e] & ~BatchedSearch::edge_bit, plain_[node] = unknown, first_edge_[node] = 0;
+    distance_[node] = found.distance[e] & ~BatchedSearch::edge_bit;
+    plain_[node] = unknown;
+    first_edge_[node] = 0;
   }
   plain_[source] = 0;
   const auto add_edges_from = [&](std::uint32_t node, std::uint32_t distance) {
@@ -91,7 +94,8 @@ std::span<const std::uint32_t> NeighborhoodSearch::Scratch::make_entries(const N
                                                                          const BatchedSearch::Distances& found) {
   const auto size = static_cast<std::size_t>(
       std::lower_bound(found.node.begin(), found.node.end(), local.node_count()) - found.node.begin());
-  bits.resize(size), paths.clear();
+  bits.resize(size);
+  paths.clear();
   for (std::size_t e = 0; e < size; ++e) {
     const auto d = found.distance[e];
     bits[e] = static_cast<std::uint16_t>((d & BatchedSearch::edge_bit) >> 16 | (d & ~BatchedSearch::edge_bit) >> 10);

@@ -37,7 +37,9 @@ class RowMaker {
       : nodes_(nodes), graph_(graph), mark_hidden_(mark_hidden) {}
   /// The row of node i; valid until the next call.
   AdjacencyRow make(std::uint32_t i, const PathDistances& distances) {
-    to_.clear(), bits_.clear(), paths_.clear();
+    to_.clear();
+    bits_.clear();
+    paths_.clear();
     for (const auto& [j, length] : distances) {
       if (j >= graph_.node_count()) break;  // guides
       to_.push_back(j);

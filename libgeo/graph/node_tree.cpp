@@ -139,8 +139,10 @@ class Splitter {
 };
 
 void join_boxes(Cell& cell, const Cell& l, const Cell& r) {
-  for (int axis = 0; axis < 3; ++axis)
-    cell.lo[axis] = std::min(l.lo[axis], r.lo[axis]), cell.hi[axis] = std::max(l.hi[axis], r.hi[axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    cell.lo[axis] = std::min(l.lo[axis], r.lo[axis]);
+    cell.hi[axis] = std::max(l.hi[axis], r.hi[axis]);
+  }
 }
 
 }  // namespace
@@ -153,7 +155,10 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
   sort_by_digits(keyed);
   Splitter splitter(positions, keyed);
   node_ = UninitializedArray<std::uint32_t>(n);
-  for (auto& c : coordinate_) c = UninitializedArray<double>(n + 16), std::fill(c.end() - 16, c.end(), 0.0);
+  for (auto& c : coordinate_) {
+    c = UninitializedArray<double>(n + 16);
+    std::fill(c.end() - 16, c.end(), 0.0);
+  }
 
   // Large cells are split one after another, the subtrees below them in parallel.
   std::vector<Cell> top{{{0, 0, 0}, {0, 0, 0}, 0, n, 0}};
@@ -188,7 +193,8 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
         }
         for (int axis = 0; axis < 3 && cell.count() > 0; ++axis) {
           const auto [lo, hi] = std::minmax_element(along(axis) + cell.begin, along(axis) + cell.end);
-          cell.lo[axis] = *lo, cell.hi[axis] = *hi;
+          cell.lo[axis] = *lo;
+          cell.hi[axis] = *hi;
         }
       }
     }

@@ -58,7 +58,10 @@ class Boruvka {
 
   std::vector<TreeEdge> run() {
     std::vector<TreeEdge> edges;
-    if (components_ > 1) best_.resize(x_.size()), tested_.resize(x_.size(), 0);
+    if (components_ > 1) {
+      best_.resize(x_.size());
+      tested_.resize(x_.size(), 0);
+    }
     while (components_ > 1) {
       std::fill(best_.begin(), best_.end(), TreeEdge());
       for (std::uint32_t i = 0; i < x_.size(); ++i) offer_nearest(i);

@@ -53,7 +53,8 @@ class PairVisibility {
   void read_around(const Vec3& center, const Box3& segment) {
     covered_ = {center - Vec3::Constant(reach_), center + Vec3::Constant(reach_)};
     covered_.add(segment);
-    triangles_.clear(), boxes_.clear();
+    triangles_.clear();
+    boxes_.clear();
     near_(covered_, triangles_);
     for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
     // Each read serves many pairs if the box is large, each test is cheap if it is small: 8 to 32
@@ -93,8 +94,10 @@ class PathUsers {
     std::sort(guides_.begin(), guides_.end());
     std::vector<std::uint32_t> ids, lengths;
     for (const auto entry : guides_)
-      if (const auto id = static_cast<std::uint32_t>(entry >> 32); ids.empty() || ids.back() != id)
-        ids.push_back(id), lengths.push_back(static_cast<std::uint32_t>(entry));
+      if (const auto id = static_cast<std::uint32_t>(entry >> 32); ids.empty() || ids.back() != id) {
+        ids.push_back(id);
+        lengths.push_back(static_cast<std::uint32_t>(entry));
+      }
     std::size_t next = 0;
     search.run(nodes_, graph_, ids, {},
                [&](std::uint32_t, const AdjacencyRow& row) { add_near(row, lengths[next++]); });
@@ -103,8 +106,10 @@ class PathUsers {
  private:
   void add_near(const AdjacencyRow& row, std::uint32_t length) {
     constexpr std::size_t vector = 16;
-    if (near_.size() < row.to.size() + vector)
-      near_.resize(2 * row.to.size() + vector), distances_.resize(near_.size());
+    if (near_.size() < row.to.size() + vector) {
+      near_.resize(2 * row.to.size() + vector);
+      distances_.resize(near_.size());
+    }
     const auto count = neighbors_within_support(row, length, near_.data(), distances_.data());
     for (std::size_t k = 0; k < count; ++k) users_.add(near_[k]);
   }
@@ -135,7 +140,8 @@ class RowBatch {
     for (const auto& [i, entries, paths] : rows_) {
       store_row(i, {std::span(to_).subspan(entry, entries), std::span(bits_).subspan(entry, entries),
                     std::span(paths_).subspan(path, paths)});
-      entry += entries, path += paths;
+      entry += entries;
+      path += paths;
     }
   }
 

@@ -61,8 +61,10 @@ CsrArrays edge_arrays(const NodeSet& nodes, const VisibilityGraph& graph) {
 
 CsrArrays neighbor_arrays(const NodeSet& nodes, const VisibilityGraph& graph) {
   return csr_arrays(graph.node_count(), [&](NodeId i, CsrArrays& out) {
-    for (const Neighbor& n : graph.neighbors(nodes, i))
-      out.indices.push_back(n.to.value), out.distances.push_back(n.distance);
+    for (const Neighbor& n : graph.neighbors(nodes, i)) {
+      out.indices.push_back(n.to.value);
+      out.distances.push_back(n.distance);
+    }
   });
 }
 

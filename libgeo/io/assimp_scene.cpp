@@ -60,7 +60,18 @@ enum class RootTransform { of_file, of_assimp };
 
 Transform transform_of(const aiMatrix4x4& m) {
   Transform result;
-  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
+  result << m.a1;
+  m.a2;
+  m.a3;
+  m.a4;
+  m.b1;
+  m.b2;
+  m.b3;
+  m.b4;
+  m.c1;
+  m.c2;
+  m.c3;
+  m.c4;
   return result;
 }
 
@@ -107,8 +118,10 @@ class Collector {
     }
     // A scene without materials has one of assimp's, with its name or without.
     if (const auto& names = mesh_.attributes.group_names;
-        names.size() == 1 && (names[0] == AI_DEFAULT_MATERIAL_NAME || names[0] == "default"))
-      mesh_.attributes.group.clear(), mesh_.attributes.group_names.clear();
+        names.size() == 1 && (names[0] == AI_DEFAULT_MATERIAL_NAME || names[0] == "default")) {
+      mesh_.attributes.group.clear();
+      mesh_.attributes.group_names.clear();
+    }
     SurfaceFile file;
     add_notes(file.notes);
     read_unit();

@@ -104,7 +104,8 @@ void add_rows(Arrays& a) {
   std::uint64_t entries = 0, paths = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const AdjacencyRow row = rows.row(i);
-    entries += row.to.size(), paths += row.paths.size();
+    entries += row.to.size();
+    paths += row.paths.size();
   }
   const auto each = [&rows, n](const auto& part) {
     return [&rows, n, part](KerfSink& out) {
@@ -255,7 +256,8 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
     }
     count.push_back(static_cast<std::uint32_t>(row.size()));
     for (const auto& [j, entry] : row) {
-      to.push_back(j), bits.push_back(entry.first);
+      to.push_back(j);
+      bits.push_back(entry.first);
       if (AdjacencyRow::has_path(entry.first)) paths.push_back(entry.second);
     }
   }
@@ -317,9 +319,12 @@ void read_about(const KerfFile& in, Body& body) {
   const auto about = nlohmann::json::parse(in.text("about"), nullptr, false);
   double cell = 0, widest = 0;  // 0: derived from the nodes
   try {
-    body.k = json_integer<int>(about.at("k")), body.crack_steps = json_integer<std::uint32_t>(about.at("updates"));
-    body.resample_limit = about.at("resample_limit").get<double>(), cell = about.at("cell").get<double>();
-    body.guide_spacing = about.value("guides", 0.0), widest = about.value("widest", 0.0);
+    body.k = json_integer<int>(about.at("k"));
+    body.crack_steps = json_integer<std::uint32_t>(about.at("updates"));
+    body.resample_limit = about.at("resample_limit").get<double>();
+    cell = about.at("cell").get<double>();
+    body.guide_spacing = about.value("guides", 0.0);
+    widest = about.value("widest", 0.0);
     body.original_nodes = about.contains("sampled") ? json_integer<std::uint32_t>(about.at("sampled"))
                                                     : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))

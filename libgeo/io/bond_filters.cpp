@@ -67,10 +67,12 @@ BondFilter rectangle_around(std::span<const BrokenBond> bonds, double margin) {
   for (const BrokenBond& b : bonds)
     for (const int k : {0, 1}) {
       const double x = (k == 0 ? f.bottom : side).dot(b.at - middle);
-      lo[k] = std::min(lo[k], x), hi[k] = std::max(hi[k], x);
+      lo[k] = std::min(lo[k], x);
+      hi[k] = std::max(hi[k], x);
     }
   f.corner = middle + (lo[0] - margin) * f.bottom + (lo[1] - margin) * side;
-  f.bottom_length = hi[0] - lo[0] + 2 * margin, f.side_length = hi[1] - lo[1] + 2 * margin;
+  f.bottom_length = hi[0] - lo[0] + 2 * margin;
+  f.side_length = hi[1] - lo[1] + 2 * margin;
   return f;
 }
 
@@ -88,7 +90,8 @@ class FilterFinder {
  public:
   FilterFinder(const Body& body, const BondModel& model)
       : body_(body), model_(model), grid_(body.nodes.spacing[0], body.nodes.position) {
-    horizon_ = model.horizon.back(), margin_ = 1e-9 * model.horizon.front();
+    horizon_ = model.horizon.back();
+    margin_ = 1e-9 * model.horizon.front();
   }
 
   std::vector<BondFilter> find() {
@@ -104,7 +107,10 @@ class FilterFinder {
     std::vector<std::int32_t> crack;
     std::vector<std::array<Vec3, 3>> soup;
     for (std::uint32_t f = 0; f < k.face_count(); ++f)
-      if (k.alive(FaceId(f))) crack.push_back(k.face(FaceId(f)).crack), soup.push_back(k.corners(FaceId(f)));
+      if (k.alive(FaceId(f))) {
+        crack.push_back(k.face(FaceId(f)).crack);
+        soup.push_back(k.corners(FaceId(f)));
+      }
     const TriangleBvh tree(soup);
     std::map<std::int32_t, std::vector<BrokenBond>> result;
     std::vector<std::uint32_t> near;

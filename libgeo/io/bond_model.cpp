@@ -46,7 +46,8 @@ BondModel find_bond_model(const Body& body, double horizon) {
     std::vector<Vec3> ends;
     std::vector<std::uint8_t> blocked;
     for (std::size_t i = begin; i < end; ++i) {
-      near.clear(), ends.clear();
+      near.clear();
+      ends.clear();
       grid.within(nodes.position, nodes.position[i], model.horizon[model.block[i]], near);
       std::erase(near, static_cast<std::uint32_t>(i));
       for (const auto j : near) ends.push_back(nodes.position[j]);

@@ -14,12 +14,20 @@ namespace {
 // Calls each(name, count) for the counts of a run.
 template <class Work, class Each>
 void counts(Work& w, const Each& each) {
-  each("steps", w.steps), each("newton", w.newton), each("cg", w.cg), each("fronts", w.fronts),
-      each("refused", w.refused);
-  each("cracks_begun", w.fracture.begun), each("cracks_divided", w.fracture.divided);
-  each("triangles_cut", w.split.crack.triangles_cut), each("edges_cut", w.split.edges_cut);
-  each("touching", w.contact.touching), each("in_zones", w.contact.in_zones), each("held", w.contact.held);
-  each("nodes_updated", w.split.nodes_updated), each("nodes_added", w.split.nodes_added);
+  each("steps", w.steps);
+  each("newton", w.newton);
+  each("cg", w.cg);
+  each("fronts", w.fronts);
+  each("refused", w.refused);
+  each("cracks_begun", w.fracture.begun);
+  each("cracks_divided", w.fracture.divided);
+  each("triangles_cut", w.split.crack.triangles_cut);
+  each("edges_cut", w.split.edges_cut);
+  each("touching", w.contact.touching);
+  each("in_zones", w.contact.in_zones);
+  each("held", w.contact.held);
+  each("nodes_updated", w.split.nodes_updated);
+  each("nodes_added", w.split.nodes_added);
 }
 
 nlohmann::ordered_json about_front(const FrontState& f, std::vector<Vec3>& places) {
@@ -53,8 +61,9 @@ class Supply {
 
 FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const KerfFile& file) {
   FrontState front;
-  front.name = about.at("name").get<std::string>(), front.closed = about.at("closed").get<bool>();
-  front.crack = json_integer<std::int32_t>(about.at("crack")),
+  front.name = about.at("name").get<std::string>();
+  front.closed = about.at("closed").get<bool>();
+  front.crack = json_integer<std::int32_t>(about.at("crack"));
   front.step = json_integer<std::uint32_t>(about.at("step"));
   for (const auto& segment : about.at("segments")) {
     front.segments.emplace_back();
@@ -112,8 +121,10 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
   std::vector<Vec3> normals, owed;
   for (const GrowingFront& g : state.fracture.fronts) {
     about["growing"].push_back(about_front(g.front, places));
-    for (std::size_t i = 0; i < g.size(); ++i)
-      normals.push_back(g.normal[i]), owed.push_back({g.owed[i], double(g.ended[i]), g.length});
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      normals.push_back(g.normal[i]);
+      owed.push_back({g.owed[i], double(g.ended[i]), g.length});
+    }
   }
   counts(state.total, [&](const char* name, std::size_t n) { about["counts"][name] = n; });
   const std::string text = about.dump();
@@ -176,7 +187,9 @@ Checkpoint read_checkpoint(const KerfFile& file) {
       GrowingFront g = growing(std::move(front), std::move(normal));
       for (std::size_t i = 0; i < g.size(); ++i) {
         const Vec3 row = owed.next();
-        g.owed[i] = row.x(), g.ended[i] = row.y() != 0, g.length = row.z();
+        g.owed[i] = row.x();
+        g.ended[i] = row.y() != 0;
+        g.length = row.z();
       }
       state.fracture.fronts.push_back(std::move(g));
     }

@@ -36,9 +36,13 @@ void write_graph_ply(std::ostream& out, const Body& body) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (int k = 0; k < 3; ++k) sink.put(nodes.position[i][k]);
     for (const double x : {nodes.radius[i], nodes.spacing[i], nodes.volume[i]}) sink.put(x);
-    sink.put(body.debris[i]), sink.put(component[i]);
+    sink.put(body.debris[i]);
+    sink.put(component[i]);
   }
-  each_edge(body, [&](std::uint32_t i, std::uint32_t j) { sink.put(i), sink.put(j); });
+  each_edge(body, [&](std::uint32_t i, std::uint32_t j) {
+    sink.put(i);
+    sink.put(j);
+  });
   sink.finish();
 }
 
@@ -72,7 +76,8 @@ void write_vtu(std::ostream& out, const Body& body) {
   };
   const std::vector<Part> cells{{"Int64", "connectivity", 1, 16 * edges, filled([&](KerfSink& sink) {
                                    each_edge(body, [&](std::uint32_t i, std::uint32_t j) {
-                                     sink.put(std::int64_t(i)), sink.put(std::int64_t(j));
+                                     sink.put(std::int64_t(i));
+                                     sink.put(std::int64_t(j));
                                    });
                                  })},
                                 {"Int64", "offsets", 1, 8 * edges, filled([&](KerfSink& sink) {

@@ -116,7 +116,10 @@ void write_vtkhdf(std::ostream& out, const Body& body) {
       for (std::int64_t e = 0; e <= edges; ++e) sink.put(2 * e);
     });
     write_set(root, "Connectivity", H5T_STD_I64LE, static_cast<hsize_t>(2 * edges), 1, [&](KerfSink& sink) {
-      each_edge(body, [&](std::uint32_t i, std::uint32_t j) { sink.put(std::int64_t(i)), sink.put(std::int64_t(j)); });
+      each_edge(body, [&](std::uint32_t i, std::uint32_t j) {
+        sink.put(std::int64_t(i));
+        sink.put(std::int64_t(j));
+      });
     });
     const Handle fields(H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
     write_set(fields, "radius", nodes.radius);

@@ -114,9 +114,11 @@ void write_peridynamics_jl(std::ostream& out, const BondModel& model) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> apart;
   for (const auto& [i, j] : model.broken) {
     const auto a = component[i.index()], b = component[j.index()];
-    if (a != b)
-      parts[a], parts[b], apart[{std::min(a, b), std::max(a, b)}] = true;
-    else
+    if (a != b) {
+      parts[a];
+      parts[b];
+      apart[{std::min(a, b), std::max(a, b)}] = true;
+    } else
       partners[i.value].push_back(j.value);
   }
   for (std::uint32_t i = 0; i < component.size(); ++i)

@@ -40,9 +40,12 @@ Json primitive(GlbFile& glb, const Chunk& chunk, const std::vector<std::array<Ve
     for (std::size_t k = 0; k < 3; ++k) {
       Corner corner{};
       const Vec3 p = mesh.vertices[mesh.triangles[t][k]] - chunk.centroid;
-      for (int i = 0; i < 3; ++i)
-        corner.at[std::size_t(i)] = float(p[i]), corner.at[std::size_t(3 + i)] = float(normals[t][k][i]);
-      corner.at[6] = float(a.uv[t][k].x()), corner.at[7] = float(1 - a.uv[t][k].y());  // in glTF v points downwards
+      for (int i = 0; i < 3; ++i) {
+        corner.at[std::size_t(i)] = float(p[i]);
+        corner.at[std::size_t(3 + i)] = float(normals[t][k][i]);
+      }
+      corner.at[6] = float(a.uv[t][k].x());
+      corner.at[7] = float(1 - a.uv[t][k].y());  // in glTF v points downwards
       if (!a.uv2.empty()) {
         corner.at[8] = float(a.uv2[t][k].x());
         corner.at[9] = float(1 - a.uv2[t][k].y());

@@ -24,9 +24,12 @@ std::size_t GlbFile::bytes(const std::string& content) {
 std::size_t GlbFile::positions(const std::vector<float>& values) {
   const std::size_t at = accessor(values, 5126, "VEC3", values.size() / 3);
   std::array<float, 3> lo{values[0], values[1], values[2]}, hi = lo;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    lo[i % 3] = std::min(lo[i % 3], values[i]), hi[i % 3] = std::max(hi[i % 3], values[i]);
-  json["accessors"][at]["min"] = lo, json["accessors"][at]["max"] = hi;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    lo[i % 3] = std::min(lo[i % 3], values[i]);
+    hi[i % 3] = std::max(hi[i % 3], values[i]);
+  }
+  json["accessors"][at]["min"] = lo;
+  json["accessors"][at]["max"] = hi;
   return at;
 }
 
@@ -59,8 +62,11 @@ void GlbFile::write(std::ostream& out) {
     out.write(reinterpret_cast<const char*>(&word), 4);
   };
   // Magic words in ASCII: "glTF", "JSON" and "BIN".
-  put(0x46546c67), put(2), put(total);
-  put(text.size()), put(0x4e4f534a);
+  put(0x46546c67);
+  put(2);
+  put(total);
+  put(text.size());
+  put(0x4e4f534a);
   out << text;
   if (bytes_.empty()) return;
   put(bytes_.size());

@@ -57,7 +57,8 @@ bool send(int pipe, const char* data, std::size_t size) {
     const auto n = ::write(pipe, data, size);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return false;
-    data += n, size -= static_cast<std::size_t>(n);
+    data += n;
+    size -= static_cast<std::size_t>(n);
   }
   return true;
 }

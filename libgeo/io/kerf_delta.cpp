@@ -71,7 +71,8 @@ std::vector<Run> difference(std::span<const std::byte> before, std::span<const s
       const std::size_t opposite = used + (i - done);
       in_place = opposite + width <= before.size() && same(i, opposite) ? in_place + width : 0;
       if (in_place == window || (in_place > 0 && i + width == after.size())) {
-        i -= in_place - width, j = used + (i - done);
+        i -= in_place - width;
+        j = used + (i - done);
         break;
       }
       if (i - done < 2 * window || i + window > after.size()) continue;
@@ -80,13 +81,17 @@ std::vector<Run> difference(std::span<const std::byte> before, std::span<const s
       if (j < before.size()) break;
     }
     if (j == before.size()) break;
-    while (i > done && j > used && same(i - width, j - width)) i -= width, j -= width;
+    while (i > done && j > used && same(i - width, j - width)) {
+      i -= width;
+      j -= width;
+    }
     const std::size_t length =
         common_bytes(after.data() + i, before.data() + j, std::min(after.size() - i, before.size() - j)) / width *
         width;
     add_literal(i - done);
     runs.push_back({j / width, length / width});
-    done = i + length, used = j + length;
+    done = i + length;
+    used = j + length;
   }
   add_literal(after.size() - done);
   return runs;

@@ -114,7 +114,9 @@ void KerfFile::Impl::open_version_1() {
   const std::string table = input.text(record.table, record.length);
   if (kerf::hash_of(table.data(), table.size()) != record.hash) fail("its table of sections does not match its hash");
   open_table(table, 0, record.table);
-  committed = input.size(), fingerprint = record.hash, segments = 1;
+  committed = input.size();
+  fingerprint = record.hash;
+  segments = 1;
 }
 
 // False at the end of the last complete commit. Only the beginning of a segment may follow there,
@@ -124,7 +126,8 @@ bool KerfFile::Impl::open_segment(std::uint64_t start) {
   const std::uint64_t room = input.size() - start;
   if (room == 0) return false;
   Head expected;
-  expected.number = segments, expected.previous = fingerprint;
+  expected.number = segments;
+  expected.previous = fingerprint;
   const auto damaged = [&] {
     fail(segments == 0
              ? "its header does not match its hash"
@@ -157,7 +160,9 @@ bool KerfFile::Impl::open_segment(std::uint64_t start) {
   if (kerf::hash_of(table.data(), table.size()) != commit.table_hash)
     fail("its table of sections does not match its hash");
   open_table(table, start, head.table);
-  committed = commit_at + sizeof(Commit), fingerprint = commit.hash, ++segments;
+  committed = commit_at + sizeof(Commit);
+  fingerprint = commit.hash;
+  ++segments;
   return true;
 }
 
@@ -166,7 +171,8 @@ Entry KerfFile::Impl::parse_entry(const nlohmann::json& row) const {
   Entry entry;
   std::string hash;
   try {
-    entry.name = row.at("name").get<std::string>(), entry.section.dtype = row.at("dtype").get<std::string>(),
+    entry.name = row.at("name").get<std::string>();
+    entry.section.dtype = row.at("dtype").get<std::string>();
     hash = row.at("xxh3").get<std::string>();
     for (const auto& d : row.at("shape")) entry.section.shape.push_back(json_integer<std::uint64_t>(d));
     entry.stored.from = json_integer<std::uint64_t>(row.at("offset"));
@@ -219,7 +225,10 @@ void KerfFile::Impl::open_table(const std::string& text, std::uint64_t start, st
             [](const Extent& a, const Extent& b) { return std::pair(a.from, a.size) < std::pair(b.from, b.size); });
   for (std::size_t i = 1; i < taken.size(); ++i)
     if (taken[i].from - taken[i - 1].from < taken[i - 1].size) fail("two of its sections overlap");
-  for (auto& [name, entry] : found) sections[name] = std::move(entry.section), extents[name] = std::move(entry.extents);
+  for (auto& [name, entry] : found) {
+    sections[name] = std::move(entry.section);
+    extents[name] = std::move(entry.extents);
+  }
 }
 
 // The content of a section from runs of rows: of the section before, in ascending order and each at
@@ -289,7 +298,8 @@ void KerfFile::Impl::fetch(const std::vector<Extent>& from, std::uint64_t at, st
     const std::uint64_t skip = at - extent->at;
     const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(out.size(), extent->size - skip));
     input.read(extent->from + skip, out.first(n));
-    out = out.subspan(n), at += n;
+    out = out.subspan(n);
+    at += n;
   }
 }
 

@@ -55,11 +55,16 @@ kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::u
       std::size_t to = 0, at = 0;  // what is given is moved together
       for (const auto& run : runs) {
         const auto n = static_cast<std::size_t>(run.count * width);
-        if (run.from == kerf::literal) std::memmove(after.data() + to, after.data() + at, n), to += n;
+        if (run.from == kerf::literal) {
+          std::memmove(after.data() + to, after.data() + at, n);
+          to += n;
+        }
         at += n;
       }
-      after.resize(to), after.shrink_to_fit();
-      s.runs = std::move(runs), s.literal_rows = given;
+      after.resize(to);
+      after.shrink_to_fit();
+      s.runs = std::move(runs);
+      s.literal_rows = given;
       s.array.fill = [bytes = std::make_shared<const std::vector<std::byte>>(std::move(after))](KerfSink& sink) {
         sink.write(*bytes);
       };
@@ -119,7 +124,8 @@ void KerfUpdate::Impl::write(std::uint64_t offset, std::span<const std::byte> by
     const auto n = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
-    bytes = bytes.subspan(static_cast<std::size_t>(n)), offset += static_cast<std::uint64_t>(n);
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+    offset += static_cast<std::uint64_t>(n);
   }
 }
 
@@ -159,7 +165,7 @@ void KerfUpdate::Impl::append(const std::vector<kerf::Stored>& changed) {
     put(kerf::bytes_of_one(segment));
     sync();
   } catch (...) {
-    [[maybe_unused]] const int ignored = ::ftruncate(descriptor, static_cast<off_t>(start));
+    [[maybe_unused]] const int ignored = ::ftruncate(descriptor; static_cast<off_t>(start));
     throw;
   }
 }

@@ -23,7 +23,8 @@ void KerfSink::write(std::span<const std::byte> bytes) {
       used_ += n;
       if (used_ == block_.size()) {
         take_(block_);
-        taken_ += used_, used_ = 0;
+        taken_ += used_;
+        used_ = 0;
       }
     }
     bytes = bytes.subspan(n);
@@ -32,7 +33,8 @@ void KerfSink::write(std::span<const std::byte> bytes) {
 
 std::uint64_t KerfSink::finish() {
   if (used_ > 0) take_(std::span(block_).first(used_));
-  taken_ += used_, used_ = 0;
+  taken_ += used_;
+  used_ = 0;
   return taken_;
 }
 
@@ -109,8 +111,10 @@ Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32
   const auto pad = [&] { put(std::span(zeros).first(aligned(at) - at)); };
   Plan plan = plan_of(start, sections);
   Head head;
-  head.number = number, head.previous = previous;
-  head.table = plan.table, head.table_length = plan.text(sections).size();
+  head.number = number;
+  head.previous = previous;
+  head.table = plan.table;
+  head.table_length = plan.text(sections).size();
   head.hash = head.own_hash();
   put(bytes_of_one(head));
   for (std::size_t i = 0; i < sections.size(); ++i) {
@@ -132,8 +136,10 @@ Commit write_segment(const KerfSink::Take& out, std::uint64_t start, std::uint32
   pad();
   Commit commit;
   commit.number = number;
-  commit.table = plan.table, commit.table_length = table.size();
-  commit.table_hash = hash_of(table.data(), table.size()), commit.head_hash = head.hash;
+  commit.table = plan.table;
+  commit.table_length = table.size();
+  commit.table_hash = hash_of(table.data(), table.size());
+  commit.head_hash = head.hash;
   commit.hash = commit.own_hash();
   return commit;
 }

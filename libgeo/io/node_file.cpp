@@ -16,7 +16,10 @@ constexpr const char* fields[] = {"x", "y", "z", "radius", "spacing", "volume"};
 
 NodeSet with_capacity(std::size_t count) {
   NodeSet nodes;
-  nodes.position.reserve(count), nodes.radius.reserve(count), nodes.spacing.reserve(count), nodes.volume.reserve(count);
+  nodes.position.reserve(count);
+  nodes.radius.reserve(count);
+  nodes.spacing.reserve(count);
+  nodes.volume.reserve(count);
   return nodes;
 }
 
@@ -92,7 +95,8 @@ PcdHeader read_pcd_header(LineReader& lines, const std::string& bytes, const std
     else if (words[0] == "DATA" && words.size() == 2) {
       if (words[1] != "ascii" && words[1] != "binary")
         lines.fail("PCD data '" + shown(words[1]) + "' is not read here; write ascii or binary");
-      h.binary = words[1] == "binary", ended = true;
+      h.binary = words[1] == "binary";
+      ended = true;
     } else if (words[0] != "VERSION" && words[0] != "VIEWPOINT")
       lines.fail("'" + shown(words[0]) + "' is not expected in a PCD header");
   }
@@ -119,7 +123,9 @@ PcdColumns find_pcd_columns(const PcdHeader& h, const LineReader& lines, const s
       if (h.names[i] == fields[k]) {
         if (h.types[i] != "F" || (size != 4 && size != 8) || count != 1)
           throw InputError(name + ": field '" + h.names[i] + "' is not one floating-point number");
-        c.word[k] = c.words, c.offset[k] = c.bytes, c.single[k] = size == 4;
+        c.word[k] = c.words;
+        c.offset[k] = c.bytes;
+        c.single[k] = size == 4;
       }
     c.bytes += static_cast<std::size_t>(size * count);
     c.words += static_cast<std::size_t>(count);
@@ -174,7 +180,7 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
   const PcdColumns columns = find_pcd_columns(header, lines, name);
   NodeSet nodes = with_capacity(header.points);  // bounded by the size of the file
   const auto rest = std::string_view(bytes).substr(lines.position());
-  (header.binary ? read_binary_points : read_ascii_points)(rest, header.points, columns, name, nodes);
+  (header.binary ? read_binary_points : read_ascii_points)(rest; header.points; columns; name; nodes);
   return nodes;
 }
 

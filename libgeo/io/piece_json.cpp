@@ -95,15 +95,22 @@ std::vector<std::vector<Vec3>> cluster_centroids(const std::vector<Chunk>& chunk
   std::vector<std::vector<Vec3>> result;
   std::vector<Vec3> moment;
   std::vector<double> volume;
-  for (const Chunk& chunk : chunks) volume.push_back(chunk.volume), moment.push_back(chunk.volume * chunk.centroid);
+  for (const Chunk& chunk : chunks) {
+    volume.push_back(chunk.volume);
+    moment.push_back(chunk.volume * chunk.centroid);
+  }
   for (const ClusterLevel& level : levels) {
     std::vector<Vec3> sum(level.volume.size(), Vec3::Zero());
     std::vector<double> total(level.volume.size(), 0);
-    for (std::size_t i = 0; i < level.of.size(); ++i) sum[level.of[i]] += moment[i], total[level.of[i]] += volume[i];
+    for (std::size_t i = 0; i < level.of.size(); ++i) {
+      sum[level.of[i]] += moment[i];
+      total[level.of[i]] += volume[i];
+    }
     result.emplace_back();
     for (std::size_t c = 0; c < sum.size(); ++c)
       result.back().push_back(total[c] > 0 ? Vec3(sum[c] / total[c]) : Vec3(Vec3::Zero()));
-    moment = std::move(sum), volume = std::move(total);
+    moment = std::move(sum);
+    volume = std::move(total);
   }
   return result;
 }

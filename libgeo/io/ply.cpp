@@ -122,10 +122,13 @@ bool read_even_rows(std::string_view bytes, bool swap, std::size_t& at, PlyEleme
     double count = 1;
     if (p.count_type != 0) {
       if (rest.size() < row + size_of(p.count_type)) return false;
-      count = decode(rest.data() + row, p.count_type, swap), row += size_of(p.count_type);
+      count = decode(rest.data() + row, p.count_type, swap);
+      row += size_of(p.count_type);
       if (!(count >= 0 && count <= static_cast<double>(rest.size()))) return false;
     }
-    first.push_back(row), each.push_back(static_cast<std::size_t>(count)), row += each.back() * size_of(p.type);
+    first.push_back(row);
+    each.push_back(static_cast<std::size_t>(count));
+    row += each.back() * size_of(p.type);
     if (row > rest.size()) return false;
   }
   if (row == 0 || rest.size() / row < element.count) return false;

@@ -215,8 +215,11 @@ void read_change(TomlTable& t, Scene& s) {
   SceneChange change;
   if (!t.find("time")) t.missing("time", "when the values change");
   t.get("time", change.time, 0, 1e9);
-  get(t, "young", change.young), get(t, "damping", change.damping), get(t, "friction", change.friction);
-  get(t, "accuracy", change.accuracy), get(t, "step", change.dt);
+  get(t, "young", change.young);
+  get(t, "damping", change.damping);
+  get(t, "friction", change.friction);
+  get(t, "accuracy", change.accuracy);
+  get(t, "step", change.dt);
   if (t.find("gravity")) t.get("gravity", change.gravity.emplace());
   if (const auto wrong = unfit(change); !wrong.empty()) t.fail("a change: " + wrong);
   if (!s.changes.empty() && change.time < s.changes.back().time) t.fail("changes must ascend in time");
@@ -258,7 +261,8 @@ void read_checkpoints(TomlTable& t, Scene& s) {
 void skip_former_contact(TomlTable& t, bool self_contact) {
   bool bodies = true;
   double stiffness = 0;
-  t.get("bodies", bodies), t.get("stiffness", stiffness, 0, 1e12);
+  t.get("bodies", bodies);
+  t.get("stiffness", stiffness, 0, 1e12);
   const auto *about_bodies = t.find("bodies"), *about_stiffness = t.find("stiffness");
   if (about_bodies && !bodies && self_contact && !t.find("self"))
     t.fail(*about_bodies, "for bodies that do not touch each other, write 'contact.self' = false");
@@ -331,7 +335,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     const auto v = t.row(*box, 6, "'grip.box'");
     Grip grip{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, read_motion(t, files), false};
     t.get("release", grip.release);
-    t.get("from", grip.from, -1e9, 1e9), t.get("until", grip.until, -1e9, 1e9);
+    t.get("from", grip.from, -1e9, 1e9);
+    t.get("until", grip.until, -1e9, 1e9);
     s.grips.push_back(std::move(grip));
   });
   top.list("blade", [&](TomlTable& t) { read_blade(t, s, files); });

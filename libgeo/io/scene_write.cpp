@@ -81,22 +81,33 @@ class SceneWriter {
 
 void SceneWriter::material(const Material& m, bool own) {
   key("model", std::string(m.model == ElasticModel::saint_venant_kirchhoff ? "\"stvk\"" : "\"neo-hookean\""));
-  key("young", m.young), key("poisson", m.poisson), key("density", m.density), key("volume_term", m.volume_term);
+  key("young", m.young);
+  key("poisson", m.poisson);
+  key("density", m.density);
+  key("volume_term", m.volume_term);
   key("damping", m.damping);
   if (!own)
     key("discretisation", std::string(m.discretisation == Discretisation::galerkin ? "\"galerkin\"" : "\"mueller04\""));
-  key("viscosity", m.viscosity), key("mode_penalty", m.mode_penalty), key("yield", m.yield), key("creep", m.creep);
+  key("viscosity", m.viscosity);
+  key("mode_penalty", m.mode_penalty);
+  key("yield", m.yield);
+  key("creep", m.creep);
   key("most_plastic", m.max_plastic);
 }
 
 void SceneWriter::strength(const Strength& s) {
-  key("strength", s.strength), key("toughness", s.toughness), key("variation", s.variation), key("grain", s.grain);
+  key("strength", s.strength);
+  key("toughness", s.toughness);
+  key("variation", s.variation);
+  key("grain", s.grain);
 }
 
 void SceneWriter::fracture(const FractureOptions& f) {
   table("[fracture]");
   strength(f);
-  key("speed", f.speed), key("branching", f.branching), key("apart", f.separation);
+  key("speed", f.speed);
+  key("branching", f.branching);
+  key("apart", f.separation);
   whole("cracks", static_cast<std::uint64_t>(f.max_cracks));
   whole("cracks_per_step", static_cast<std::uint64_t>(f.cracks_per_step));
   key("start", f.start);
@@ -119,9 +130,11 @@ void SceneWriter::body(const SceneBody& b, const Scene& s, std::size_t index) {
   whole("levels", static_cast<std::uint64_t>(b.sampling.levels));
   whole("across", static_cast<std::uint64_t>(b.sampling.across));
   whole("k", static_cast<std::uint64_t>(s.k));
-  key("scale", b.scale), key("position", b.place.position);
+  key("scale", b.scale);
+  key("position", b.place.position);
   rotation(b.place.rotation);
-  key("velocity", b.velocity), key("spin", b.spin);
+  key("velocity", b.velocity);
+  key("spin", b.spin);
   if (b.material) {
     table("[body.material]");
     material(*b.material, true);
@@ -157,7 +170,10 @@ void SceneWriter::blade(const Blade& b) {
   out_ << "points = [\n";
   for (const Vec3& p : b.points) out_ << "  " << row(p) << ",\n";
   out_ << "]\n";
-  key("back", b.back), key("thickness", b.thickness), key("stiffness", b.stiffness), key("limit", b.limit);
+  key("back", b.back);
+  key("thickness", b.thickness);
+  key("stiffness", b.stiffness);
+  key("limit", b.limit);
   keys(b.motion);
 }
 
@@ -178,9 +194,11 @@ void SceneWriter::obstacle(const SceneObstacle& o) {
     throw InputError("obstacle '" + o.name + "' has a mesh that was not read from a file, which no scene can name");
   else
     path("mesh", o.file);
-  key("scale", o.scale), key("position", o.place.position);
+  key("scale", o.scale);
+  key("position", o.place.position);
   rotation(o.place.rotation);
-  key("stiffness", o.stiffness), key("friction", o.friction);
+  key("stiffness", o.stiffness);
+  key("friction", o.friction);
   if (!o.motion.keys.empty()) keys(o.motion);
 }
 
@@ -198,7 +216,9 @@ void SceneWriter::change(const SceneChange& c) {
 void SceneWriter::time(const Scene& s) {
   table("[time]");
   whole("frames", static_cast<std::uint64_t>(s.frames));
-  key("frame_rate", s.frame_rate), key("step", s.dt), key("accuracy", s.accuracy);
+  key("frame_rate", s.frame_rate);
+  key("step", s.dt);
+  key("accuracy", s.accuracy);
   whole("checkpoint_every", static_cast<std::uint64_t>(s.checkpoint_every));
   std::string frames;
   for (const int f : s.checkpoints) frames += (frames.empty() ? "" : ", ") + std::to_string(f);
@@ -217,12 +237,15 @@ void SceneWriter::write(const Scene& s) {
   for (std::size_t b = 0; b < s.bodies.size(); ++b) body(s.bodies[b], s, b);
   if (s.ground) {
     table("[ground]");
-    key("point", s.ground_point), key("normal", s.ground_normal), key("stiffness", s.ground_stiffness);
+    key("point", s.ground_point);
+    key("normal", s.ground_normal);
+    key("stiffness", s.ground_stiffness);
     key("friction", s.friction);
   }
   table("[contact]");
   flag("self", s.self_contact);
-  key("friction", s.contact.friction), key("gap", s.contact.gap);
+  key("friction", s.contact.friction);
+  key("gap", s.contact.gap);
   time(s);
   for (const auto& [file, of] : s.score_files) {
     table("[[score]]");

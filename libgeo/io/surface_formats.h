@@ -78,9 +78,10 @@ AtVertices<V> at_vertices(const TriangleMesh& mesh, const std::vector<std::array
     const char here = mesh.patch.empty() || mesh.patch[t] == 0 ? 2 : 1;
     for (int k = 0; k < 3; ++k) {
       const auto v = mesh.triangles[t][k];
-      if (here > rank[v])
-        rank[v] = here, result.value[v] = at_corner[t][k];
-      else if (here == 2 && result.value[v] != at_corner[t][k])
+      if (here > rank[v]) {
+        rank[v] = here;
+        result.value[v] = at_corner[t][k];
+      } else if (here == 2 && result.value[v] != at_corner[t][k])
         result.agree = false;
     }
   }

@@ -321,8 +321,10 @@ class GltfReader {
     const auto add = [&](std::size_t n, const std::string& noun) {
       if (n > 0) left_out_.push_back(counted(n, noun));
     };
-    add(points_, "mesh of points"), add(lines_, "mesh of lines");
-    add(hulls_, "collision shape"), add(hidden_, "hidden mesh");
+    add(points_, "mesh of points");
+    add(lines_, "mesh of lines");
+    add(hulls_, "collision shape");
+    add(hidden_, "hidden mesh");
     add(document_.count("cameras"), "camera");
     const Description& lights =
         GltfDocument::member(GltfDocument::extension(document_.json(), "KHR_lights_punctual"), "lights");

@@ -64,9 +64,11 @@ class ObjReader {
       if (words_.size() < 4) lines_.fail("a normal needs three numbers");
       normal_.push_back({lines_.any_real(words_[1]), lines_.any_real(words_[2]), lines_.any_real(words_[3])});
     } else if (words_[0] == "usemtl") {
-      material_ = rest_of(words_), any_material_ = true;
+      material_ = rest_of(words_);
+      any_material_ = true;
     } else if (words_[0] == "g" || words_[0] == "o") {
-      part_ = rest_of(words_), any_part_ = true;
+      part_ = rest_of(words_);
+      any_part_ = true;
     } else if (words_[0] == "mtllib") {
       mesh_.attributes.materials = rest_of(words_);
     } else if (words_[0] == "f" || words_[0] == "fo") {  // fo: of old versions
@@ -129,7 +131,8 @@ class ObjReader {
       corners_.push_back({row_at(word.substr(0, first), mesh_.vertices.size(), "vertex"),
                           vt.empty() ? ~0u : row_at(vt, uv_.size(), "texture coordinate"),
                           vn.empty() ? ~0u : row_at(vn, normal_.size(), "normal")});
-      any_uv_ = any_uv_ || !vt.empty(), any_normal_ = any_normal_ || !vn.empty();
+      any_uv_ = any_uv_ || !vt.empty();
+      any_normal_ = any_normal_ || !vn.empty();
     }
     faces_.push_back({corners_.size(), lines_.number(), materials_.row(material_), parts_.row(part_)});
   }
@@ -153,7 +156,8 @@ class ObjReader {
     }
     for (const auto& [p, q, r] : add_polygon(mesh_, polygon_, name_ + ":" + std::to_string(face.line) + ": ")) {
       rows_.push_back({first + p, first + q, first + r});
-      material_of_.push_back(face.material), part_of_.push_back(face.part);
+      material_of_.push_back(face.material);
+      part_of_.push_back(face.part);
     }
   }
 
@@ -178,10 +182,13 @@ class ObjReader {
       if (!c.allFinite()) c = Color::Ones();
     }
     if (colored_) a.color = at_corners(mesh_, color_);
-    if (any_material_)
-      a.group = std::move(material_of_), a.group_names = std::move(materials_.all);
-    else if (any_part_)
-      a.group = std::move(part_of_), a.group_names = std::move(parts_.all);
+    if (any_material_) {
+      a.group = std::move(material_of_);
+      a.group_names = std::move(materials_.all);
+    } else if (any_part_) {
+      a.group = std::move(part_of_);
+      a.group_names = std::move(parts_.all);
+    }
   }
 
   LineReader lines_;
@@ -265,8 +272,10 @@ void write_obj(std::ostream& out, const TriangleMesh& mesh) {
   for (const auto& [patch, triangles] : patches) {
     if (!mesh.patch.empty()) out << "g patch_" << patch << '\n';
     for (const auto t : triangles) {
-      if (!a.group.empty() && a.group[t] != group)
-        group = a.group[t], out << "usemtl " << a.group_names[static_cast<std::size_t>(group)] << '\n';
+      if (!a.group.empty() && a.group[t] != group) {
+        group = a.group[t];
+        out << "usemtl " << a.group_names[static_cast<std::size_t>(group)] << '\n';
+      }
       out << 'f';
       for (int k = 0; k < 3; ++k) {
         out << ' ' << mesh.triangles[t][k] + 1;

@@ -56,7 +56,8 @@ std::vector<Color> colors_of(const PlyElement& e) {
 class Reader {
  public:
   Reader(const Ply& ply, const std::string& name) : ply_(ply), name_(name) {
-    vertex_ = ply.find("vertex"), face_ = ply.find("face");
+    vertex_ = ply.find("vertex");
+    face_ = ply.find("face");
     if (const PlyElement* strips = ply.find("tristrips")) read_strips(*strips);
     if (!vertex_ || !face_)
       throw InputError(name + ": has no " + (vertex_ ? "faces; it is not a surface" : "vertices"));
@@ -167,7 +168,8 @@ class Reader {
     if (!indices_) throw InputError(name_ + ": its faces have no vertex_indices");
     if ((site && site->count_type) || (patch_ && patch_->count_type))
       throw InputError(name_ + ": 'site' and 'patch' must not be lists");
-    parts_.reserve(face_->count), mesh().triangles.reserve(face_->count);
+    parts_.reserve(face_->count);
+    mesh().triangles.reserve(face_->count);
     std::vector<std::uint32_t> polygon;
     const auto vertices = static_cast<std::uint32_t>(mesh().vertices.size());
     for (std::uint32_t i = 0; i < face_->count; ++i) {
@@ -176,7 +178,8 @@ class Reader {
         const Triangle t{row_of(indices_->values[begin]), row_of(indices_->values[begin + 1]),
                          row_of(indices_->values[begin + 2])};
         if (std::max({t[0], t[1], t[2]}) < vertices) {
-          mesh().triangles.push_back(t), parts_.push_back({i, {0, 1, 2}});
+          mesh().triangles.push_back(t);
+          parts_.push_back({i, {0, 1, 2}});
           continue;
         }
       }
@@ -186,7 +189,8 @@ class Reader {
         parts_.push_back({i, corner});
     }
     if (patch_ && site) {
-      mesh().patch.reserve(parts_.size()), mesh().site.reserve(vertices);
+      mesh().patch.reserve(parts_.size());
+      mesh().site.reserve(vertices);
       for (const Part& part : parts_) mesh().patch.push_back(whole(patch_->values[part.face], "patch"));
       for (const double s : site->values) {
         if (row_of(s) == ~0u) throw InputError(name_ + ": a site is not an id");

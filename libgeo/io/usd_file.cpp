@@ -52,7 +52,8 @@ class Samples {
     // A repeated sample before each change: else readers interpolate from the last change on.
     if (i > written_ + 1) out_ << margin_ << "    " << i - 1 << ": " << last_ << ",\n";
     out_ << margin_ << "    " << i << ": " << text << ",\n";
-    last_ = std::move(text), written_ = i;
+    last_ = std::move(text);
+    written_ = i;
   }
   ~Samples() { out_ << margin_ << "}\n"; }
 
@@ -83,7 +84,8 @@ bool same_rows(const TriangleMesh& a, const TriangleMesh& b) {
 // The arrays that same_rows() compares.
 TriangleMesh rows_of(TriangleMesh&& m) {
   TriangleMesh rows;
-  rows.triangles = std::move(m.triangles), rows.patch = std::move(m.patch),
+  rows.triangles = std::move(m.triangles);
+  rows.patch = std::move(m.patch);
   rows.attributes.uv = std::move(m.attributes.uv);
   return rows;
 }
@@ -146,7 +148,8 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     each_in_order(all_frames(run), read, [&](std::size_t i, auto made) {
       points.add(i, std::move(made.first));
       if (i > 0 && same_rows(made.second, last)) return;
-      cut.push_back(i), last = rows_of(std::move(made.second));
+      cut.push_back(i);
+      last = rows_of(std::move(made.second));
       if (kept.size() < most_kept) kept.emplace(i, last);
     });
   }

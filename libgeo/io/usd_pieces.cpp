@@ -52,10 +52,14 @@ class UsdStage {
       add_list(head, schemas.size(), [&](std::size_t i) { head += '"' + schemas[i] + '"'; });
       head += ")";
     }
-    line(head), line("{");
+    line(head);
+    line("{");
     ++depth_;
   }
-  void end() { --depth_, line("}"); }
+  void end() {
+    --depth_;
+    line("}");
+  }
   void translate(const Vec3& by) {
     std::string text;
     add_translation(text, std::string(4 * depth_, ' '), by);
@@ -221,7 +225,8 @@ class UsdPieces {
     stage_.line(std::string("color3f inputs:diffuseColor = ") + (crack ? "(0.42, 0.36, 0.31)" : "(0.8, 0.8, 0.8)"));
     stage_.line("float inputs:roughness = 0.9");
     stage_.line("token outputs:surface");
-    stage_.end(), stage_.end();
+    stage_.end();
+    stage_.end();
   }
 
   UsdStage stage_;

@@ -34,7 +34,10 @@ openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec& grids, const std::strin
   for (const auto& grid : grids) {
     if (!grid || !(grid->isType<openvdb::FloatGrid>() || grid->isType<openvdb::DoubleGrid>())) continue;
     names += (names.empty() ? "'" : ", '") + grid->getName() + "'";
-    if (name.empty() || grid->getName() == name) found = grid, ++fit;
+    if (name.empty() || grid->getName() == name) {
+      found = grid;
+      ++fit;
+    }
   }
   if (names.empty()) throw InputError(path + ": holds no grid of numbers");
   if (fit == 0) throw InputError(path + ": holds no grid of numbers named '" + name + "' but " + names);

@@ -17,9 +17,11 @@ struct Cell {
 inline std::uint64_t morton(const std::array<std::int32_t, 3>& c) {
   const auto spread = [](std::uint64_t x) {
     x &= 0x1fffff;
-    x = (x | x << 32) & 0x1f00000000ffffull, x = (x | x << 16) & 0x1f0000ff0000ffull,
+    x = (x | x << 32) & 0x1f00000000ffffull;
+    x = (x | x << 16) & 0x1f0000ff0000ffull;
     x = (x | x << 8) & 0x100f00f00f00f00full;
-    return x = (x | x << 4) & 0x10c30c30c30c30c3ull, (x | x << 2) & 0x1249249249249249ull;
+    x = (x | x << 4) & 0x10c30c30c30c30c3ull;
+    return (x | x << 2) & 0x1249249249249249ull;
   };
   return spread(static_cast<std::uint64_t>(c[0])) | spread(static_cast<std::uint64_t>(c[1])) << 1 |
          spread(static_cast<std::uint64_t>(c[2])) << 2;
@@ -29,9 +31,11 @@ inline std::uint64_t morton(const std::array<std::int32_t, 3>& c) {
 inline std::array<std::int32_t, 3> corner_of(std::uint64_t code) {
   const auto gather = [](std::uint64_t x) {
     x &= 0x1249249249249249ull;
-    x = (x | x >> 2) & 0x10c30c30c30c30c3ull, x = (x | x >> 4) & 0x100f00f00f00f00full,
+    x = (x | x >> 2) & 0x10c30c30c30c30c3ull;
+    x = (x | x >> 4) & 0x100f00f00f00f00full;
     x = (x | x >> 8) & 0x1f0000ff0000ffull;
-    return x = (x | x >> 16) & 0x1f00000000ffffull, static_cast<std::int32_t>((x | x >> 32) & 0x1fffff);
+    x = (x | x >> 16) & 0x1f00000000ffffull;
+    return static_cast<std::int32_t>((x | x >> 32) & 0x1fffff);
   };
   return {gather(code), gather(code >> 1), gather(code >> 2)};
 }

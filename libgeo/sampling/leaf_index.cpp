@@ -19,7 +19,8 @@ LeafIndex::LeafIndex(std::vector<std::uint64_t> codes, std::vector<std::uint8_t>
   };
   while (count() > codes_.size() / 8 + 4096) ++block_;
   for (int k = 0; k < 3; ++k) blocks_[k] = (most[k] >> block_) + 1;
-  begin_.resize(count()), end_.resize(count());
+  begin_.resize(count());
+  end_.resize(count());
   for (std::uint32_t i = 0; i < codes_.size(); ++i) {
     const auto c = corner_of(codes_[i] >> 3 * block_);
     const auto block =

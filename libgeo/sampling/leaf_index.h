@@ -38,7 +38,8 @@ void LeafIndex::around(const Cell& c, int level, const Visit& visit) const {
   std::array<std::int32_t, 3> lo, hi;
   for (int i = 0; i < 3; ++i) {
     const std::int32_t at = c.corner[i] & ~(edge - 1);
-    lo[i] = std::max(0, at - edge), hi[i] = std::min(at + 2 * edge, blocks_[i] << block_);
+    lo[i] = std::max(0, at - edge);
+    hi[i] = std::min(at + 2 * edge, blocks_[i] << block_);
   }
   std::array<std::int32_t, 3> p;
   for (p[2] = lo[2]; p[2] < hi[2]; p[2] += unit)

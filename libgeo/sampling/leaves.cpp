@@ -49,14 +49,18 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
   Vec3 sum = Vec3::Zero();
   int count = 0;
   for (int i = 0; i < points; ++i)
-    if (in[i]) sum += at[i], ++count;
+    if (in[i]) {
+      sum += at[i];
+      ++count;
+    }
   leaf.share = float(count) / points;
   if (count == 0) {
     // A wall between the sample points: it has a node in its middle where it fills most of the
     // cell's cross-section.
     const Wall wall = thinnest_wall(tree, lattice, region, edge);
     if (wall.area < edge * edge || !box.meets({wall.at, wall.at})) return leaf;
-    leaf.position = wall.at, leaf.node = tree.inside(region, wall.at);
+    leaf.position = wall.at;
+    leaf.node = tree.inside(region, wall.at);
     leaf.share = float(std::max(least_share, 0.5 * wall.thickness * wall.area / (edge * edge * edge)));
     return leaf;
   }
@@ -72,7 +76,10 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
     if (!in[i]) continue;
     const auto close = tree.tree().closest(at[i], edge);
     const double depth = close.triangle == ~0u ? edge : close.distance;
-    if (depth > most) most = depth, leaf.position = at[i];
+    if (depth > most) {
+      most = depth;
+      leaf.position = at[i];
+    }
   }
   leaf.node = most > 0;
   return leaf;

@@ -140,7 +140,10 @@ std::vector<std::uint32_t> NodeGrid::nearest(std::span<const Vec3> positions, co
   visit_near(root(), p, Vec3::Zero(), reach, [&](std::uint32_t index) {
     const std::pair found{(positions[index] - p).squaredNorm(), index};
     if (index == self || (best.size() == k && !(found < best.front())) || !accept(index)) return;
-    if (best.size() == k) std::pop_heap(best.begin(), best.end()), best.pop_back();
+    if (best.size() == k) {
+      std::pop_heap(best.begin(), best.end());
+      best.pop_back();
+    }
     best.push_back(found);
     std::push_heap(best.begin(), best.end());
     if (best.size() == k) reach = best.front().first;

@@ -150,13 +150,15 @@ void RegionTree::inside(const Region& region, std::span<const Vec3> points, std:
       for (std::uint64_t left = ~(above[w] | below[w]); left != 0; left &= left - 1) {
         const auto k = static_cast<std::size_t>(std::countr_zero(left));
         const int side = 64 * w + k < count ? orient3d_exact(t[0], t[1], t[2], points[64 * w + k]) : 1;
-        (side < 0 ? below : above)[w] |= std::uint64_t(side != 0) << k, clear = clear && side != 0;
+        (side < 0 ? below : above)[w] |= std::uint64_t(side != 0) << k;
+        clear = clear && side != 0;
       }
     // Bits of points that are in the plane, or on another side of it than the point before them.
     std::uint64_t over = first > 0, under = first < 0;
     for (std::size_t w = 0; w < words; ++w) {
       ask[w] = (above[w] ^ (above[w] << 1 | over)) | (below[w] ^ (below[w] << 1 | under)) | ~(above[w] | below[w]);
-      over = above[w] >> 63, under = below[w] >> 63;
+      over = above[w] >> 63;
+      under = below[w] >> 63;
     }
     if (clear && covers(t, box)) {
       for (std::size_t w = 0; w < words; ++w) odd[w] ^= ask[w];

@@ -28,7 +28,10 @@ std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> fa
     const int darts = 1 + static_cast<int>(std::min(64.0, std::ceil(2 * twice_area / (finest * finest))));
     for (int i = 0; i < darts; ++i) {
       double u = random.uniform(), v = random.uniform();
-      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
       const Vec3 base = a + u * (b - a) + v * (c - a);
       const double spacing = spacing_at(base);
       for (int side = 0; side < 2; ++side) {

@@ -34,7 +34,10 @@ void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice
       for (int level = orphans[k].cell.level + 1; best == std::numeric_limits<double>::infinity(); ++level)
         index.around(orphans[k].cell, level, [&](std::uint32_t row) {
           const double d = (nodes.position[row] - middle).squaredNorm();
-          if (d < best || (d == best && row < heir[k])) best = d, heir[k] = row;
+          if (d < best || (d == best && row < heir[k])) {
+            best = d;
+            heir[k] = row;
+          }
         });
     }
   });
@@ -56,7 +59,9 @@ NodeSet gather(LeafLists lists, const Lattice& lattice, const NodeSelection& sel
   NodeSet nodes;
   if (n == 0) return nodes;
   if (n >= ~0u) throw InputError("more than four thousand million nodes; choose a larger spacing");
-  nodes.position.resize(n), nodes.spacing.resize(n), nodes.volume.resize(n);
+  nodes.position.resize(n);
+  nodes.spacing.resize(n);
+  nodes.volume.resize(n);
   std::vector<std::uint64_t> codes(n);
   std::vector<std::uint8_t> levels(n);
   std::vector<char> whole(n);
@@ -66,8 +71,11 @@ NodeSet gather(LeafLists lists, const Lattice& lattice, const NodeSelection& sel
       for (const Leaf& leaf : lists[l]) {
         if (!selected(leaf)) continue;
         const double edge = lattice.edge(leaf.cell.level);
-        nodes.position[i] = leaf.position, nodes.spacing[i] = edge, nodes.volume[i] = leaf.share * edge * edge * edge;
-        codes[i] = morton(leaf.cell.corner), levels[i] = static_cast<std::uint8_t>(leaf.cell.level),
+        nodes.position[i] = leaf.position;
+        nodes.spacing[i] = edge;
+        nodes.volume[i] = leaf.share * edge * edge * edge;
+        codes[i] = morton(leaf.cell.corner);
+        levels[i] = static_cast<std::uint8_t>(leaf.cell.level);
         whole[i] = leaf.whole;
         ++i;
       }
@@ -107,7 +115,8 @@ NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, co
   if (nodes.size() == 0)
     throw InputError("no node fits inside at spacing " + std::to_string(found.spacing) + "; choose a smaller one");
   const auto copy_wall = [](const Wall& wall, double& thickness, Vec3& at) {
-    thickness = std::isfinite(wall.thickness) ? wall.thickness : 0, at = wall.at;
+    thickness = std::isfinite(wall.thickness) ? wall.thickness : 0;
+    at = wall.at;
   };
   copy_wall(leaves.thin.thinnest, found.thinnest, found.thinnest_at);
   copy_wall(leaves.thin.unresolved, found.unresolved, found.unresolved_at);

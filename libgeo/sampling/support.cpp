@@ -48,9 +48,11 @@ void set_support_radii(NodeSet& nodes, const LeafIndex& leaves, double support, 
         find_dozen(nodes, leaves, i, near);
         const double own = nodes.spacing[i];
         double sum = own, squares = own * own, squared = 0;
-        for (const Near& n : near)
-          sum += nodes.spacing[n.row], squares += nodes.spacing[n.row] * nodes.spacing[n.row],
-              squared = std::max(squared, n.squared);
+        for (const Near& n : near) {
+          sum += nodes.spacing[n.row];
+          squares += nodes.spacing[n.row] * nodes.spacing[n.row];
+          squared = std::max(squared, n.squared);
+        }
         const double reach =
             near.size() < std::min(dozen, nodes.size() - 1) ? 3 * own : std::min(std::sqrt(squared), 3 * own);
         // 5 % more than the distance of the twelfth node, which then lies strictly within the

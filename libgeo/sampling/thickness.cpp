@@ -34,7 +34,8 @@ double exit_distance(const RegionTree& tree, const Vec3& p, const Vec3& directio
       const Vec3 s = p - a, q = s.cross(u);
       const double x = s.dot(w) / det, y = direction.dot(q) / det, t = v.dot(q) / det;
       if (x < 0 || y < 0 || x + y > 1 || !(t > 0) || t > length || t >= first) continue;
-      first = t, across = tree.normal(row).dot(direction) >= facing;
+      first = t;
+      across = tree.normal(row).dot(direction) >= facing;
     }
     // A hit beyond this part may not be the first.
     if (first <= length * (part + 1) / parts) return across ? first : none;
@@ -60,13 +61,15 @@ bool part_in_box(const std::array<Vec3, 3>& t, const Box3& box, Vec3& middle, do
       if (dp >= 0) out[count++] = p;
       if ((dp >= 0) != (dq >= 0)) out[count++] = p + dp / (dp - dq) * (q - p);
     }
-    n = count, now = 1 - now;
+    n = count;
+    now = 1 - now;
   }
   middle = Vec3::Zero();
   Vec3 twice = Vec3::Zero();
-  for (int i = 0; i < n; ++i)
-    middle += polygon[now][i] / n,
-        twice += (polygon[now][i] - polygon[now][0]).cross(polygon[now][(i + 1) % n] - polygon[now][0]);
+  for (int i = 0; i < n; ++i) {
+    middle += polygon[now][i] / n;
+    twice += (polygon[now][i] - polygon[now][0]).cross(polygon[now][(i + 1) % n] - polygon[now][0]);
+  }
   area = 0.5 * twice.norm();
   return n > 0;
 }
@@ -96,7 +99,10 @@ Wall thinnest_wall(const RegionTree& tree, const Lattice& lattice, const Region&
     if (!part_in_box(tree.corners(triangle), box, p, area)) continue;
     const double t = exit_distance(tree, p, -tree.normal(triangle), limit, triangle, parts);
     if (t < none) wall.area += area;
-    if (t < wall.thickness) wall.thickness = t, wall.at = p - 0.5 * t * tree.normal(triangle);
+    if (t < wall.thickness) {
+      wall.thickness = t;
+      wall.at = p - 0.5 * t * tree.normal(triangle);
+    }
   }
   return wall;
 }

@@ -38,7 +38,10 @@ std::vector<std::vector<Found>> walk(const RegionTree& tree, const Lattice& latt
     open = 0;
     for (Task& task : tasks) {
       if (!task.found.empty()) next.push_back({{}, std::move(task.found), {}, false});
-      for (Region& part : task.parts) next.push_back({std::move(part), {}, {}, true}), ++open;
+      for (Region& part : task.parts) {
+        next.push_back({std::move(part), {}, {}, true});
+        ++open;
+      }
     }
     tasks = std::move(next);
   }

@@ -55,7 +55,10 @@ std::vector<std::vector<std::uint32_t>> by_cell(const std::vector<Reach>& reach,
       at = at << 21 | static_cast<std::uint64_t>(
                           std::clamp((reach[t].middle[axis] - box.lo[axis]) / cell + 0x1p19, 0.0, 0x1p21 - 1));
     std::uint32_t& entry = index[at];
-    if (entry == ~0u) entry = static_cast<std::uint32_t>(cells.size()), cells.emplace_back();
+    if (entry == ~0u) {
+      entry = static_cast<std::uint32_t>(cells.size());
+      cells.emplace_back();
+    }
     cells[entry].push_back(t);
   }
   return cells;
@@ -113,8 +116,10 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
     if (!keep[t]) continue;
     Triangle triangle = walls.triangles[t];
     for (auto& v : triangle) {
-      if (index[v] == ~0u)
-        index[v] = static_cast<std::uint32_t>(kept.vertices.size()), kept.vertices.push_back(walls.vertices[v]);
+      if (index[v] == ~0u) {
+        index[v] = static_cast<std::uint32_t>(kept.vertices.size());
+        kept.vertices.push_back(walls.vertices[v]);
+      }
       v = index[v];
     }
     kept.triangles.push_back(triangle);
@@ -202,10 +207,15 @@ class Bisection {
       v[forward ? k : (k + 1) % 3] = middle;
       walls_.triangles[t][forward ? (k + 1) % 3 : k] = middle;
       walls_.triangles.push_back(v);
-      edges[at_a] = across, edges[k] = to_b;
-      edges_of_[t][at_b] = across, edges_of_[t][k] = to_a;
+      edges[at_a] = across;
+      edges[k] = to_b;
+      edges_of_[t][at_b] = across;
+      edges_of_[t][k] = to_a;
       edges_of_.push_back(edges);
-      add_use(across, t), add_use(to_a, t), add_use(across, other), add_use(to_b, other);
+      add_use(across, t);
+      add_use(to_a, t);
+      add_use(across, other);
+      add_use(to_b, other);
     }
   }
 

@@ -80,7 +80,8 @@ TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
     const int n = int(std::ceil(size[axis] / half[axis])) + 2;
     const double first = along.lo[axis] - half[axis] * random.uniform(1, 2);
     for (int i = 0; i <= n + 1; ++i) at[k].push_back(first + half[axis] * i);
-    at[k].front() -= size.norm(), at[k].back() += size.norm();
+    at[k].front() -= size.norm();
+    at[k].back() += size.norm();
   }
   const int columns = int(at[0].size()), rows = int(at[1].size());
   return grid_walls(
@@ -198,7 +199,10 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
       double nearest = std::numeric_limits<double>::infinity();
       for (const Vec3& s : sites) nearest = std::min(nearest, (q - s).norm());
       nearest /= spacing(p);
-      if (nearest > farthest) farthest = nearest, best = q;
+      if (nearest > farthest) {
+        farthest = nearest;
+        best = q;
+      }
     }
     sites.push_back(best);
   }

@@ -50,7 +50,8 @@ class Scoring {
       if (now.cells <= low || now.cells >= high) now.cells = (low + high) / 2;
       if (!done || high - low < 2) {
         now = {o_.pieces, o_.pattern.seed + 0x9e3779b97f4a7c15ull * ++variants};
-        low = 0, high = 2 * o_.pieces + 2;
+        low = 0;
+        high = 2 * o_.pieces + 2;
       }
     }
     if (best_.pieces == 0 && nearest_.pieces > 0) finish(walls_of(nearest_), false);

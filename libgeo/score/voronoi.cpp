@@ -40,7 +40,10 @@ class Corners {
   }
   const Vec3& at(const Name& name) {
     std::uint32_t& index = indices_[name];
-    if (index == ~0u) index = static_cast<std::uint32_t>(positions_.size()), positions_.push_back(position(name));
+    if (index == ~0u) {
+      index = static_cast<std::uint32_t>(positions_.size());
+      positions_.push_back(position(name));
+    }
     return positions_[index];
   }
   // Whether the corner is nearer to `site` than to its defining sites.
@@ -177,7 +180,8 @@ std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& bo
       const auto found = walls.find({side.plane, i});
       if (found == walls.end()) return std::nullopt;
       auto mine = side.loop, theirs = found->second;
-      std::sort(mine.begin(), mine.end()), std::sort(theirs.begin(), theirs.end());
+      std::sort(mine.begin(), mine.end());
+      std::sort(theirs.begin(), theirs.end());
       if (mine != theirs) return std::nullopt;
       ++matched;
     }

@@ -18,7 +18,9 @@ Mat3 frame_along(const Vec3& axis) {
   int least = 0;
   z.cwiseAbs().minCoeff(&least);
   const Vec3 x = (Vec3::Unit(least) - z[least] * z).normalized();
-  frame << x, z.cross(x), z;
+  frame << x;
+  z.cross(x);
+  z;
   return frame;
 }
 
@@ -66,7 +68,10 @@ TriangleMesh grid_walls(const std::array<std::vector<double>, 3>& at, const std:
           if (++next[std::size_t(axis)] == n[axis] || label(i, j, k) == label(next[0], next[1], next[2])) continue;
           const auto u = std::size_t(axis + 1) % 3, v = std::size_t(axis + 2) % 3;
           std::array<std::array<int, 3>, 4> c{next, next, next, next};
-          ++c[1][u], ++c[2][u], ++c[2][v], ++c[3][v];
+          ++c[1][u];
+          ++c[2][u];
+          ++c[2][v];
+          ++c[3][v];
           const std::array<std::uint32_t, 4> corners{vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])};
           add_wall(walls, corners);
         }

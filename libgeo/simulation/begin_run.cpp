@@ -14,7 +14,8 @@ void follow_donors(const BodyDelta& delta, RunState& state) {
 
 void insert_scored_sheet(const Front& sheet, std::int32_t crack, RunStart& run) {
   TriangleMesh mesh;
-  mesh.vertices = sheet.steps[0], mesh.triangles = sheet.triangles;
+  mesh.vertices = sheet.steps[0];
+  mesh.triangles = sheet.triangles;
   Complex scored = run.body.surface;
   insert_sheet(scored, mesh, crack);
   follow_donors(update_body(run.body, scored), run.state);

@@ -96,7 +96,10 @@ std::vector<PlaceWay> ways_outside(const MovedBody& moved, const Blade& blade, c
 // The longest of those ways that lead through the body. Looks at steps of `most`.
 double longest_way_through(const MovedBody& moved, const Blade& blade, std::span<const PlaceWay> ways, double most) {
   Box3 swept;
-  for (const PlaceWay& w : ways) swept.add(w.from), swept.add(w.to);
+  for (const PlaceWay& w : ways) {
+    swept.add(w.from);
+    swept.add(w.to);
+  }
   const MapAt after(moved, blade, 1, swept);
   InverseDeformation::VertexCache memory;
   double longest = 0;

@@ -27,7 +27,10 @@ void duplicate_point(EdgeFront& edge, std::size_t k, bool before, double at) {
 EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, const std::string& name, bool closed) {
   std::vector<Vec3> material;
   EdgeFront edge;
-  for (const EdgePoint& p : points) material.push_back(p.material), edge.at.push_back(p.at);
+  for (const EdgePoint& p : points) {
+    material.push_back(p.material);
+    edge.at.push_back(p.at);
+  }
   edge.front = begin_front(material, closed, crack);
   edge.front.name = name;
   return edge;
@@ -99,8 +102,8 @@ void collapse(EdgeFront& edge, std::span<const EdgePoint> next) {
       continue;
     }
     const std::size_t removed = has(next, at[s]) ? s + 1 : s;
-    points.erase(points.begin() + static_cast<std::ptrdiff_t>(removed)),
-        at.erase(at.begin() + static_cast<std::ptrdiff_t>(removed));
+    points.erase(points.begin() + static_cast<std::ptrdiff_t>(removed));
+    at.erase(at.begin() + static_cast<std::ptrdiff_t>(removed));
     segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(s));
   }
 }

@@ -14,7 +14,7 @@
 namespace geo {
 
 /// The shortest segment and the shortest way of a front, in node spacings. A sheet nearer than that
-/// is not told from the front.
+/// is not distinguished from the front.
 constexpr double resolved_by_front = 0.05;
 /// The distance from a sheet of its own blade within which an edge is beside it, in node spacings:
 /// it is in that cut, goes on from it, or moves back along it.

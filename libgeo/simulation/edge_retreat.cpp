@@ -51,7 +51,10 @@ std::size_t hold_retreating(const Complex& surface, const FrontState& front, std
   }
   std::size_t count = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (held[i]) to[i] = front.points[i].position, ++count;
+    if (held[i]) {
+      to[i] = front.points[i].position;
+      ++count;
+    }
   return count;
 }
 

@@ -55,7 +55,8 @@ class EdgeSampler {
     s.world = pose_ * place_on(blade_, parameter);
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
-    s.material = place_.resolved(place.position), s.within = place.in_support;
+    s.material = place_.resolved(place.position);
+    s.within = place.in_support;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
       s.gap =
@@ -116,7 +117,8 @@ std::vector<Sample> sample_edge(const InverseDeformation& map, const Body& body,
     for (std::size_t i = begin; i < end; ++i) {
       const Sample next = sampler.at(double(i + 1));
       sampler.refine(last, next, 6, segments[i]);
-      segments[i].push_back(next), last = next;
+      segments[i].push_back(next);
+      last = next;
     }
   });
   std::vector<Sample> samples;

@@ -96,8 +96,10 @@ class FrontPlanner {
     carry_points_in_air();
     if (!g_.front.closed) {
       const std::size_t last = g_.size() - 1;
-      extend_end(0, 1, head_), extend_end(last, last - 1, tail_);
-      detour_around_edge(0, head_), detour_around_edge(last, tail_);
+      extend_end(0, 1, head_);
+      extend_end(last, last - 1, tail_);
+      detour_around_edge(0, head_);
+      detour_around_edge(last, tail_);
     }
     for (std::size_t k = head_.size(); k-- > 0;) add(0, head_[k].position, head_[k].ended);
     for (std::size_t i = 0; i < g_.size(); ++i) {
@@ -112,7 +114,9 @@ class FrontPlanner {
  private:
   bool moves(std::size_t i) const { return next_[i] != g_.front.points[i].position; }
   void add(std::size_t from, const Vec3& to, bool end) {
-    plan_.from.push_back(static_cast<std::uint32_t>(from)), plan_.next.push_back(to), plan_.ended.push_back(end);
+    plan_.from.push_back(static_cast<std::uint32_t>(from));
+    plan_.next.push_back(to);
+    plan_.ended.push_back(end);
   }
   // An end in air whose place an extension has taken: it only is where new points start.
   bool replaced(std::size_t i) const {
@@ -253,7 +257,8 @@ FrontPlan plan_front(const Complex& complex, const GrowingFront& front, std::spa
 
 FrontState with_planned_points(const GrowingFront& g, const FrontPlan& plan) {
   FrontState front = g.front;
-  front.points.clear(), front.segments.clear();
+  front.points.clear();
+  front.segments.clear();
   const std::size_t n = plan.from.size();
   for (std::size_t k = 0; k < n; ++k) {
     const auto i = plan.from[k], j = plan.from[(k + 1) % n];
@@ -274,7 +279,8 @@ GrowingFront merged(const GrowingFront& before, const FrontPlan& plan, const Fro
                     std::span<const Vec3> direction) {
   GrowingFront g;
   g.front = moved;
-  g.front.points.clear(), g.front.segments.clear();
+  g.front.points.clear();
+  g.front.segments.clear();
   g.length = before.length;
   double farthest = 0;
   const auto add = [&](std::size_t k, const FrontState::Point& p) {
@@ -311,7 +317,9 @@ bool may_grow(const GrowingFront& g, std::size_t segment) {
 
 void append_point(GrowingFront& to, const GrowingFront& from, std::size_t i) {
   to.front.points.push_back(from.front.points[i]);
-  to.normal.push_back(from.normal[i]), to.owed.push_back(from.owed[i]), to.ended.push_back(from.ended[i]);
+  to.normal.push_back(from.normal[i]);
+  to.owed.push_back(from.owed[i]);
+  to.ended.push_back(from.ended[i]);
 }
 
 }  // namespace
@@ -336,7 +344,10 @@ std::vector<GrowingFront> fronts_after(const GrowingFront& before, const FrontPl
     }
     if (!open) {
       FrontState& front = runs.emplace_back().front;
-      front.closed = false, front.crack = g.front.crack, front.step = g.front.step, front.name = g.front.name;
+      front.closed = false;
+      front.crack = g.front.crack;
+      front.step = g.front.step;
+      front.name = g.front.name;
       runs.back().length = g.length;
       append_point(runs.back(), g, s);
       open = true;

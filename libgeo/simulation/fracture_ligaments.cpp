@@ -17,7 +17,8 @@ Ends unordered(VertexId a, VertexId b) { return a < b ? Ends{a, b} : Ends{b, a};
 
 FrontState front_along(const Complex& complex, std::int32_t crack, const std::vector<VertexId>& line) {
   FrontState front;
-  front.crack = crack, front.step = 1;
+  front.crack = crack;
+  front.step = 1;
   front.closed = line.front() == line.back();
   for (std::size_t k = 0; k < line.size(); ++k) {
     const FrontState::Point p{complex.point(line[k]), line[k]};
@@ -56,8 +57,10 @@ std::vector<FrontState> unfollowed_borders(const Complex& complex, std::int32_t 
     const auto& face = complex.face(f);
     for (std::size_t k = 0; k < 3 && face.crack == crack; ++k) {
       const VertexId a = face.v[k], b = face.v[(k + 1) % 3];
-      if (complex.faces_around(a, b).size() == 1 && !followed.contains(unordered(a, b)))
-        next[a].push_back(b), ++arriving[b];
+      if (complex.faces_around(a, b).size() == 1 && !followed.contains(unordered(a, b))) {
+        next[a].push_back(b);
+        ++arriving[b];
+      }
     }
   }
   std::vector<FrontState> found;
@@ -65,7 +68,8 @@ std::vector<FrontState> unfollowed_borders(const Complex& complex, std::int32_t 
     std::vector<VertexId> line{from};
     do {
       auto& onward = next[line.back()];
-      line.push_back(onward.back()), onward.pop_back();
+      line.push_back(onward.back());
+      onward.pop_back();
     } while (line.back() != from && next[line.back()].size() == 1 && arriving[line.back()] == 1);
     found.push_back(front_along(complex, crack, line));
   };

@@ -54,7 +54,10 @@ void smooth_along(const GrowingFront& g, std::vector<Mat3>& tensor) {
       for (const bool after : {false, true}) {
         if (!g.front.closed && (after ? i + 1 == n : i == 0)) continue;
         const std::size_t j = after ? (i + 1) % n : (i + n - 1) % n;
-        if (g.live(j)) tensor[i] += old[j], total += 1;
+        if (g.live(j)) {
+          tensor[i] += old[j];
+          total += 1;
+        }
       }
       tensor[i] /= total;
     }
@@ -72,7 +75,8 @@ FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
       frame[i] = tip_frame(g, i);
       if (!g.live(i) || !may_break(in.options, frame[i].at)) continue;
       const TipField field = tip_field(in.body, in.motion.displacement, in.solid.materials(), frame[i]);
-      resolved[i] = field.nodes >= least_nodes, node[i] = field.node;
+      resolved[i] = field.nodes >= least_nodes;
+      node[i] = field.node;
       if (!resolved[i]) continue;
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
@@ -118,7 +122,10 @@ bool branches(const FractureOptions& options, const GrowingFront& g, const Front
   double sum = 0;
   std::size_t live = 0;
   for (std::size_t i = 0; i < g.size(); ++i)
-    if (g.live(i)) sum += load.ratio[i], ++live;
+    if (g.live(i)) {
+      sum += load.ratio[i];
+      ++live;
+    }
   return live > 0 && sum > options.branching * double(live);
 }
 
@@ -198,8 +205,10 @@ void FractureStep::grow(GrowingFront& g, std::span<const GrowingFront> all) {
   branch.front.crack = unused_crack(in_.body, state_.fronts, all);
   branch.length = g.length = 0;
   FrontLoad other = load;
-  turn(load, g, std::numbers::pi / 6), turn(other, g, -std::numbers::pi / 6);
-  ++state_.cracks, ++stats_.divided;
+  turn(load, g, std::numbers::pi / 6);
+  turn(other, g, -std::numbers::pi / 6);
+  ++state_.cracks;
+  ++stats_.divided;
   advance(g, load, step, due.spacing);
   advance(branch, other, step, due.spacing);
 }
@@ -243,7 +252,8 @@ void FractureStep::start_cracks() {
       ++stats_.refused;
       continue;
     }
-    ++state_.cracks, ++stats_.begun;
+    ++state_.cracks;
+    ++stats_.begun;
     keep(fronts_after(g, plan, moved, {}));
   }
 }
@@ -257,8 +267,10 @@ void step_fracture(const FractureInput& in, FractureState& state, const SplitSte
   step.start_cracks();
   if (!stats) return;
   const FractureStats& done = step.stats();
-  stats->begun += done.begun, stats->divided += done.divided;
-  stats->advanced += done.advanced, stats->refused += done.refused;
+  stats->begun += done.begun;
+  stats->divided += done.divided;
+  stats->advanced += done.advanced;
+  stats->refused += done.refused;
 }
 
 }  // namespace geo

@@ -30,11 +30,30 @@ Mat3 mode_displacement(const Material& m, double r, double angle) {
 Mat3 mode_stress(double poisson, int mode, double r, double angle) {
   const double c = std::cos(angle / 2), s = std::sin(angle / 2), c3 = std::cos(1.5 * angle), s3 = std::sin(1.5 * angle);
   double xx = 0, yy = 0, xy = 0, xz = 0, yz = 0;
-  if (mode == 0) xx = c * (1 - s * s3), yy = c * (1 + s * s3), xy = s * c * c3;
-  if (mode == 1) xx = -s * (2 + c * c3), yy = s * c * c3, xy = c * (1 - s * s3);
-  if (mode == 2) xz = -s, yz = c;
+  if (mode == 0) {
+    xx = c * (1 - s * s3);
+    yy = c * (1 + s * s3);
+    xy = s * c * c3;
+  }
+  if (mode == 1) {
+    xx = -s * (2 + c * c3);
+    yy = s * c * c3;
+    xy = c * (1 - s * s3);
+  }
+  if (mode == 2) {
+    xz = -s;
+    yz = c;
+  }
   Mat3 stress;
-  stress << xx, xy, xz, xy, yy, yz, xz, yz, poisson * (xx + yy);
+  stress << xx;
+  xy;
+  xz;
+  xy;
+  yy;
+  yz;
+  xz;
+  yz;
+  poisson*(xx + yy);
   return stress / std::sqrt(2 * std::numbers::pi * r);
 }
 
@@ -168,7 +187,8 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   // Crack faces carry no traction σ n: only the uncracked share behind the tip keeps it.
   const double open = 1 - crack_behind(body.surface, tip, near.support);
   const Vec3 traction = open * field.uniform.col(1);
-  field.uniform.col(1) = traction, field.uniform.row(1) = traction.transpose();
+  field.uniform.col(1) = traction;
+  field.uniform.row(1) = traction.transpose();
   return field;
 }
 

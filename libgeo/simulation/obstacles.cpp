@@ -26,7 +26,8 @@ constexpr double resolved_stiffness = 16;
 
 Eigen::Isometry3d isometry(const Pose& p) {
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
-  at.linear() = p.rotation.toRotationMatrix(), at.translation() = p.position;
+  at.linear() = p.rotation.toRotationMatrix();
+  at.translation() = p.position;
   return at;
 }
 
@@ -51,17 +52,20 @@ ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
   const NodeSet& nodes = step.body.nodes;
   const std::size_t n = step.solid.size();
   ContactScale scale;
-  scale.areal_density.assign(materials.count(), 0), scale.stiff = scale.areal_density;
+  scale.areal_density.assign(materials.count(), 0);
+  scale.stiff = scale.areal_density;
   std::vector<double> count(materials.count(), 0), spacing = count;
   for (std::size_t i = 0; i < n; ++i) {
     const auto m = materials.index(i);
     scale.areal_density[m] += step.solid.mass(NodeId(i)) / (nodes.spacing[i] * nodes.spacing[i]);
-    spacing[m] += nodes.spacing[i], ++count[m];
+    spacing[m] += nodes.spacing[i];
+    ++count[m];
   }
   for (std::size_t m = 0; m < count.size(); ++m) {
     if (!(count[m] > 0)) continue;
     scale.spacing += spacing[m] / double(n);
-    scale.areal_density[m] /= count[m], spacing[m] /= count[m];
+    scale.areal_density[m] /= count[m];
+    spacing[m] /= count[m];
     scale.stiff[m] = standing_heights * materials[m].density * gravity.norm() +
                      std::min(relative_stiffness * materials[m].young / spacing[m],
                               resolved_stiffness * materials[m].density * spacing[m] / (step.dt * step.dt));
@@ -112,8 +116,10 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
     Eigen::Isometry3d from = Eigen::Isometry3d::Identity(), to = from;
     if (ground)
       from.translation() = to.translation() = scene.ground_point;
-    else
-      from = isometry(scene.obstacles[k].pose(step.time)), to = isometry(scene.obstacles[k].pose(step.time + dt));
+    else {
+      from = isometry(scene.obstacles[k].pose(step.time));
+      to = isometry(scene.obstacles[k].pose(step.time + dt));
+    }
     const double moved = (to.translation() - from.translation()).norm() +
                          shapes_[k]->extent() * Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
     // Twice the way of nodes at their present speed, since forces of the step may accelerate them.
@@ -128,10 +134,12 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
 }
 
 void Obstacles::add_reactions(const State& motion, double share, FrameStats& stats) const {
-  stats.obstacle_force.resize(shapes_.size(), Vec3::Zero()), stats.obstacle_torque.resize(shapes_.size(), Vec3::Zero());
+  stats.obstacle_force.resize(shapes_.size(), Vec3::Zero());
+  stats.obstacle_torque.resize(shapes_.size(), Vec3::Zero());
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const ObstaclePenalty::Reaction r = obstacles_[k].reaction(motion.displacement);
-    stats.obstacle_force[k] += share * r.force, stats.obstacle_torque[k] += share * r.torque;
+    stats.obstacle_force[k] += share * r.force;
+    stats.obstacle_torque[k] += share * r.torque;
   }
 }
 

@@ -25,7 +25,8 @@ TriangleMesh square_of(const SceneObstacle& plane, const Box3& bodies) {
   const Vec3 level = n.cross(Vec3::UnitZ()).norm() > 1e-6 ? n.cross(Vec3::UnitZ()).normalized() : Vec3::UnitX();
   const Vec3 foot = middle - n.dot(middle) * n, a = 0.75 * bodies.diagonal() / plane.scale * level, b = n.cross(a);
   TriangleMesh square;
-  square.vertices = {foot - a - b, foot + a - b, foot + a + b, foot - a + b}, square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  square.vertices = {foot - a - b, foot + a - b, foot + a + b, foot - a + b};
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};
   return square;
 }
 

@@ -28,7 +28,10 @@ std::vector<NodeWeight> point_weights(const Body& body, const Solid& solid, Node
   double total = 0;
   for (auto& [i, w] : carriers)
     total += w = kernel((nodes.position[i.index()] - x).norm() / nodes.radius[i.index()], 1.0);
-  if (!(total > 0)) carriers.resize(1), carriers[0].second = total = 1;
+  if (!(total > 0)) {
+    carriers.resize(1);
+    carriers[0].second = total = 1;
+  }
   std::map<NodeId, double> sum;
   std::vector<std::pair<NodeId, Vec3>> gradient;
   for (const auto& [i, w] : carriers) {

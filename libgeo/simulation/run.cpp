@@ -9,9 +9,14 @@ namespace {
 
 void add(SplitStats& sum, const SplitStats& o) {
   sum.crack += o.crack;
-  sum.edges_cut += o.edges_cut, sum.edges_added += o.edges_added, sum.nodes_updated += o.nodes_updated;
-  sum.nodes_added += o.nodes_added, sum.nodes_moved += o.nodes_moved, sum.orphans += o.orphans;
-  sum.resample_seconds += o.resample_seconds, sum.graph_seconds += o.graph_seconds;
+  sum.edges_cut += o.edges_cut;
+  sum.edges_added += o.edges_added;
+  sum.nodes_updated += o.nodes_updated;
+  sum.nodes_added += o.nodes_added;
+  sum.nodes_moved += o.nodes_moved;
+  sum.orphans += o.orphans;
+  sum.resample_seconds += o.resample_seconds;
+  sum.graph_seconds += o.graph_seconds;
   sum.binding_seconds += o.binding_seconds;
 }
 
@@ -19,18 +24,32 @@ void add(SplitStats& sum, const SplitStats& o) {
 
 FrameStats& FrameStats::operator+=(const FrameStats& o) {
   add(split, o.split);
-  refused += o.refused, fronts += o.fronts, newton += o.newton, cg += o.cg, steps += o.steps;
-  front_seconds += o.front_seconds, mechanics_seconds += o.mechanics_seconds;
-  contact_seconds += o.contact_seconds, write_seconds += o.write_seconds, fracture_seconds += o.fracture_seconds;
-  fracture.begun += o.fracture.begun, fracture.divided += o.fracture.divided;
-  fracture.advanced += o.fracture.advanced, fracture.refused += o.fracture.refused;
+  refused += o.refused;
+  fronts += o.fronts;
+  newton += o.newton;
+  cg += o.cg;
+  steps += o.steps;
+  front_seconds += o.front_seconds;
+  mechanics_seconds += o.mechanics_seconds;
+  contact_seconds += o.contact_seconds;
+  write_seconds += o.write_seconds;
+  fracture_seconds += o.fracture_seconds;
+  fracture.begun += o.fracture.begun;
+  fracture.divided += o.fracture.divided;
+  fracture.advanced += o.fracture.advanced;
+  fracture.refused += o.fracture.refused;
   contact += o.contact;
   sheet.deviation = std::max(sheet.deviation, o.sheet.deviation);
   sheet.turning = std::max(sheet.turning, o.sheet.turning);
-  sheet.retreating += o.sheet.retreating, sheet.crumbs = o.sheet.crumbs;
-  energy = o.energy, kinetic = o.kinetic, weight = o.weight;
-  blade_force = o.blade_force, pull_force = o.pull_force;
-  obstacle_force = o.obstacle_force, obstacle_torque = o.obstacle_torque;
+  sheet.retreating += o.sheet.retreating;
+  sheet.crumbs = o.sheet.crumbs;
+  energy = o.energy;
+  kinetic = o.kinetic;
+  weight = o.weight;
+  blade_force = o.blade_force;
+  pull_force = o.pull_force;
+  obstacle_force = o.obstacle_force;
+  obstacle_torque = o.obstacle_torque;
   return *this;
 }
 

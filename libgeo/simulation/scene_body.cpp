@@ -25,8 +25,10 @@ Body build_scene_body(const Scene& scene, const PlacedModels& models, std::vecto
     if (sampling.spacing <= 0 && sampling.count == 0)
       sampling.spacing = scene.bodies[b].spacing_percent / 100 * bounding_box(models.bodies[b]).diagonal();
     const NodeSet own = sample_nodes(models.bodies[b], sampling, progress);
-    append(nodes.position, own.position), append(nodes.radius, own.radius);
-    append(nodes.spacing, own.spacing), append(nodes.volume, own.volume);
+    append(nodes.position, own.position);
+    append(nodes.radius, own.radius);
+    append(nodes.spacing, own.spacing);
+    append(nodes.volume, own.volume);
     body_index.resize(nodes.size(), static_cast<std::uint32_t>(b));
   }
   Body body =

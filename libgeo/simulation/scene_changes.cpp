@@ -9,9 +9,14 @@ namespace {
 
 // Copies what a change may set.
 void copy_values(const Scene& from, Scene& to) {
-  to.material = from.material, to.gravity = from.gravity, to.friction = from.friction;
-  to.contact.friction = from.contact.friction, to.accuracy = from.accuracy, to.dt = from.dt;
-  to.bodies.resize(from.bodies.size()), to.obstacles.resize(from.obstacles.size());
+  to.material = from.material;
+  to.gravity = from.gravity;
+  to.friction = from.friction;
+  to.contact.friction = from.contact.friction;
+  to.accuracy = from.accuracy;
+  to.dt = from.dt;
+  to.bodies.resize(from.bodies.size());
+  to.obstacles.resize(from.obstacles.size());
   for (std::size_t b = 0; b < from.bodies.size(); ++b) to.bodies[b].material = from.bodies[b].material;
   for (std::size_t o = 0; o < from.obstacles.size(); ++o) to.obstacles[o].friction = from.obstacles[o].friction;
 }

@@ -175,10 +175,14 @@ Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
 }
 
 void Simulation::Impl::restore(Body new_body, RunState new_state) {
-  state = checked(scene, new_body, std::move(new_state)), body = std::move(new_body);
+  state = checked(scene, new_body, std::move(new_state));
+  body = std::move(new_body);
   if (std::exchange(cut_since_build, false)) solid = Solid(body, materials_of(scene, state.body_index));
   solid.set_rotations(state.motion);
-  obstacles = Obstacles(scene), environment = {}, wedge = {}, pull = {};
+  obstacles = Obstacles(scene);
+  environment = {};
+  wedge = {};
+  pull = {};
   reset_contact();
   hold_material(state.time);
   changes.revert(scene);
@@ -367,7 +371,8 @@ Simulation::Impl::PlannedCut Simulation::Impl::plan_cut(const MovedBody& moved, 
 
 // Begins the crack of an advance.
 void Simulation::Impl::begin(Advance& advance, FrameStats& stats) {
-  advance.split = begin_step(advance.edge.front, advance.to, stats), advance.is_begun = true;
+  advance.split = begin_step(advance.edge.front, advance.to, stats);
+  advance.is_begun = true;
 }
 
 // Advances the fronts of a blade.
@@ -468,7 +473,8 @@ void Simulation::Impl::integrate(const TimeStep& step, FrameStats& stats) {
   const auto held = pull.reaction(state.motion.displacement, scene.pulls.size());
   for (std::size_t p = 0; p < held.size(); ++p) stats.pull_force[p] += share * held[p];
   obstacles.add_reactions(state.motion, share, stats);
-  stats.newton += static_cast<std::size_t>(report.newton), stats.cg += static_cast<std::size_t>(report.cg);
+  stats.newton += static_cast<std::size_t>(report.newton);
+  stats.cg += static_cast<std::size_t>(report.cg);
   ++stats.steps;
   stats.energy = report.energy;
   stats.mechanics_seconds += watch.lap();

@@ -41,7 +41,10 @@ Location locate(const std::array<Vec3, 3>& t, const Vec3& p) {
     if (e.squaredNorm() > (t[(longest + 1) % 3] - t[longest]).squaredNorm()) longest = k;
     const double s = std::clamp(e.dot(p - t[a]) / e.squaredNorm(), 0.0, 1.0);
     const double distance = (p - t[a] - s * e).norm();
-    if (distance <= best) best = distance, on_edge = {2, {a, b}, {1 - s, s}};
+    if (distance <= best) {
+      best = distance;
+      on_edge = {2, {a, b}, {1 - s, s}};
+    }
   }
   if (on_edge.count == 2) return on_edge;
   // Height over the longest edge first, then the position along the edge: the error is a few ulps

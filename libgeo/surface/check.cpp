@@ -40,7 +40,8 @@ Edges edges_of(const TriangleMesh& mesh) {
     for (int k = 0; k < 3; ++k) {
       const auto a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
       auto& e = edges.try_emplace(edge_key(a, b), EdgeUses{0, 0, t, t}).first->second;
-      ++(a < b ? e.up : e.down), e.last = t;
+      ++(a < b ? e.up : e.down);
+      e.last = t;
     }
   return edges;
 }
@@ -138,7 +139,9 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
       if (f[i] == g[j]) {
         for (int k = 0; k < shared; ++k)
           if (shared_f[k] == i || shared_g[k] == j) return true;  // a vertex occurs twice
-        shared_f[shared] = i, shared_g[shared] = j, ++shared;
+        shared_f[shared] = i;
+        shared_g[shared] = j;
+        ++shared;
       }
   if (shared == 3) return true;
   const auto clear = [](const std::array<Vec3, 3>& plane, const Vec3& a, const Vec3& b) {

@@ -70,7 +70,8 @@ std::map<Pair, double> sections_of(const Complex& complex, const Pieces& pieces,
     for (const Vec3& p : c) {
       const Vec2 x(u.dot(p - center), v.dot(p - center));
       section.second += area / 12 * x * x.transpose();
-      section.points.push_back(x), sum += x;
+      section.points.push_back(x);
+      sum += x;
     }
     section.second += area / 12 * sum * sum.transpose();
   }

@@ -100,7 +100,10 @@ void Complex::surface_neighbors(SurfaceVertexId v, std::vector<SurfaceVertexId>&
     out.push_back(surface_vertex(s, (k + 2) % 3));
     for (const int edge : {k, (k + 2) % 3}) {
       const Side next = neighbor(s, edge);
-      if (std::find(seen.begin(), seen.end(), next) == seen.end()) seen.push_back(next), stack.push_back(next);
+      if (std::find(seen.begin(), seen.end(), next) == seen.end()) {
+        seen.push_back(next);
+        stack.push_back(next);
+      }
     }
   }
   std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());

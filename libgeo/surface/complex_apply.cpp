@@ -135,7 +135,8 @@ class Complex::Commit {
     std::vector<std::pair<std::uint64_t, const ComplexEdit::RadialOrder*>> orders;
     for (const auto& order : edit_.radial_orders) orders.push_back({edge_key(order.a, order.b), &order});
     std::sort(orders.begin(), orders.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-    cycles_.reserve(changes.size()), cycle_faces_.reserve(2 * changes.size());
+    cycles_.reserve(changes.size());
+    cycle_faces_.reserve(2 * changes.size());
     const auto face_of = [&](FaceId f) { return face_after(f); };
     std::vector<FaceId> gained, cycle;
     auto order = orders.begin();
@@ -176,7 +177,10 @@ class Complex::Commit {
 
   void touch(VertexId v) {
     auto& mark = k_.impl_->marks[v.index()];
-    if (mark != k_.impl_->epoch) mark = k_.impl_->epoch, touched_.push_back(v);
+    if (mark != k_.impl_->epoch) {
+      mark = k_.impl_->epoch;
+      touched_.push_back(v);
+    }
   }
 
   void remove_faces() {

@@ -104,9 +104,16 @@ class Complex::Builder {
   /// than there is, and 4096 entries. Larger: later growth, more memory.
   void reserve_for_cracks() {
     const auto more = [](auto& v, std::size_t each) { v.reserve(v.size() + v.size() / 4 + 4096 * each); };
-    more(k.points_, 1), more(k.impl_->marks, 1), more(k.first_corner_, 1), more(k.site_, 1), more(k.fan_side_, 1),
-        more(k.fan_corner_, 1);
-    more(k.faces_, 1), more(k.radial_, 3), more(k.next_corner_, 3), more(k.corner_vertex_, 6);
+    more(k.points_, 1);
+    more(k.impl_->marks, 1);
+    more(k.first_corner_, 1);
+    more(k.site_, 1);
+    more(k.fan_side_, 1);
+    more(k.fan_corner_, 1);
+    more(k.faces_, 1);
+    more(k.radial_, 3);
+    more(k.next_corner_, 3);
+    more(k.corner_vertex_, 6);
     k.impl_->index.reserve(k.faces_.capacity());
   }
 

@@ -24,7 +24,8 @@ class Difference {
     const double rounding = 0x1p-50 * extent.hi.cwiseAbs().cwiseMax(extent.lo.cwiseAbs()).maxCoeff();
     // Relative to the diagonal: 1e-9 to find candidate faces by their boxes, 1e-7 to count as lying
     // on one. Larger values accept a surface that has been moved slightly.
-    search_reach_ = 1e-9 * extent.diagonal() + rounding, tolerance_ = 1e-7 * extent.diagonal() + rounding;
+    search_reach_ = 1e-9 * extent.diagonal() + rounding;
+    tolerance_ = 1e-7 * extent.diagonal() + rounding;
   }
 
   ComplexEdit edit() {
@@ -91,7 +92,10 @@ class Difference {
     for (const auto id : candidates_) {
       if (from_.face(FaceId(id)).crack != to_.face(f).crack) continue;
       const double d = distance(middle, from_.corners(FaceId(id)));
-      if (d < best) best = d, parent = FaceId(id);
+      if (d < best) {
+        best = d;
+        parent = FaceId(id);
+      }
     }
     return parent;
   }

@@ -15,7 +15,10 @@ void Complex::FanBuilder::walk_fan(Side start, VertexId v, std::vector<SurfaceVe
   Side s = start;
   for (int edge = corner_at(k_.face(s.face), v), k = edge;;) {
     corners_.push_back({s, k});
-    if (s <= fan.lowest) fan.lowest = s, fan.corner = k;
+    if (s <= fan.lowest) {
+      fan.lowest = s;
+      fan.corner = k;
+    }
     if (const auto old = k_.surface_vertex(s, k);
         old.valid() && (candidates_.size() == fan.first_candidate || candidates_.back() != old))
       candidates_.push_back(old);
@@ -30,12 +33,15 @@ void Complex::FanBuilder::walk_fan(Side start, VertexId v, std::vector<SurfaceVe
   candidates_.erase(std::unique(first, candidates_.end()), candidates_.end());
   old_ids.insert(old_ids.end(), candidates_.begin() + static_cast<std::ptrdiff_t>(fan.first_candidate),
                  candidates_.end());
-  fan.end_corner = corners_.size(), fan.end_candidate = candidates_.size();
+  fan.end_corner = corners_.size();
+  fan.end_candidate = candidates_.size();
   fans_.push_back(fan);
 }
 
 void Complex::FanBuilder::collect_fans(VertexId v, std::vector<SurfaceVertexId>& old_ids) {
-  corners_.clear(), candidates_.clear(), fans_.clear();
+  corners_.clear();
+  candidates_.clear();
+  fans_.clear();
   for (const FaceId f : k_.faces_at(v))
     for (int which = 0; which < side_count(k_.face(f)); ++which) {
       const Side start{f, which};

@@ -61,7 +61,8 @@ std::size_t drop_degenerate(TriangleMesh& mesh) {
     std::sort(sorted.begin(), sorted.end());
     if (sorted[0] == sorted[1] || sorted[1] == sorted[2]) continue;
     auto& [sum, triangles] = same[sorted];
-    sum += orientation(t), triangles.push_back(t);
+    sum += orientation(t);
+    triangles.push_back(t);
   }
   for (const auto& [sorted, found] : same)
     for (const auto t : found.second)
@@ -81,7 +82,8 @@ Components orient(TriangleMesh& mesh) {
   each_edge(half_edges_of(mesh), [&](std::span<const HalfEdge> s) {
     if (s.size() != 2) return;
     const bool same = mesh.triangles[s[0].triangle][s[0].corner] == mesh.triangles[s[1].triangle][s[1].corner];
-    beside[s[0].triangle][s[0].corner] = s[1].triangle, beside[s[1].triangle][s[1].corner] = s[0].triangle;
+    beside[s[0].triangle][s[0].corner] = s[1].triangle;
+    beside[s[1].triangle][s[1].corner] = s[0].triangle;
     against[s[0].triangle][s[0].corner] = against[s[1].triangle][s[1].corner] = same;
   });
   Components components{std::vector<std::uint32_t>(n, ~0u)};
@@ -97,7 +99,8 @@ Components orient(TriangleMesh& mesh) {
         if (next == ~0u || components.of[next] != ~0u) continue;
         components.of[next] = components.count;
         reversed[next] = reversed[t] != against[t][k];
-        flips += reversed[next], component.push_back(next);
+        flips += reversed[next];
+        component.push_back(next);
       }
     const bool majority = 2 * flips > component.size();
     for (const auto t : component)

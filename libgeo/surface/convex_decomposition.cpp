@@ -62,7 +62,10 @@ Solid below(const Solid& solid, const Vec3& n, double offset, double side, std::
     }
     for (std::size_t k = 2; k < polygon.size(); ++k) kept.push_back({polygon[0], polygon[k - 1], polygon[k]});
     points.insert(points.end(), polygon.begin(), polygon.end());
-    if (exit && entry) rim.push_back({*exit, *entry}), middle += *exit + *entry;
+    if (exit && entry) {
+      rim.push_back({*exit, *entry});
+      middle += *exit + *entry;
+    }
   }
   if (!rim.empty()) middle /= 2 * double(rim.size());
   for (const auto& [a, b] : rim) kept.push_back({b, a, middle});
@@ -89,7 +92,10 @@ Division divide(const Solid& solid, std::size_t max_vertices, const std::functio
     const Vec3 n = axes.eigenvectors().col(axis);
     double lo = std::numeric_limits<double>::infinity(), hi = -lo;
     for (const auto& t : solid.triangles)
-      for (const Vec3& p : t) lo = std::min(lo, n.dot(p)), hi = std::max(hi, n.dot(p));
+      for (const Vec3& p : t) {
+        lo = std::min(lo, n.dot(p));
+        hi = std::max(hi, n.dot(p));
+      }
     for (int k = 1; k <= positions; ++k) {
       const double offset = lo + (hi - lo) * k / (positions + 1);
       Solid under = below(solid, n, offset, 1, max_vertices), over = below(solid, n, offset, -1, max_vertices);
@@ -119,8 +125,8 @@ std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::si
         next.begin());
     if (next[best].saved <= least_saving) break;
     auto halves = std::move(next[best].halves);
-    all.erase(all.begin() + static_cast<std::ptrdiff_t>(best)),
-        next.erase(next.begin() + static_cast<std::ptrdiff_t>(best));
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(best));
+    next.erase(next.begin() + static_cast<std::ptrdiff_t>(best));
     for (Solid& half : halves) all.push_back(std::move(half));
   }
   std::vector<TriangleMesh> hulls;

@@ -34,9 +34,11 @@ CrackDelta DeltaSum::sum() const {
     std::sort(out.begin(), out.end());
   };
   delta.new_vertices = new_vertices_;
-  list(removed_faces_, delta.removed_faces), list(new_faces_, delta.new_faces),
-      list(new_crack_faces_, delta.new_crack_faces);
-  list(removed_, delta.removed_surface_vertices), list(touched_, delta.touched_surface_vertices);
+  list(removed_faces_, delta.removed_faces);
+  list(new_faces_, delta.new_faces);
+  list(new_crack_faces_, delta.new_crack_faces);
+  list(removed_, delta.removed_surface_vertices);
+  list(touched_, delta.touched_surface_vertices);
   for (const auto& [v, from] : new_) delta.new_surface_vertices.push_back(v);
   std::sort(delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
   for (const SurfaceVertexId v : delta.new_surface_vertices) delta.copied_from.push_back(new_.at(v));

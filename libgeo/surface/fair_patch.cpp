@@ -113,9 +113,12 @@ bool Patch::flip(const Edge& edge) {
   if (!there && !(std::max(sharpness_of(a, d, c), sharpness_of(d, b, c)) <
                   std::max(sharpness_of(a, b, c), sharpness_of(b, a, d))))
     return false;
-  unlink(s), unlink(t);
-  triangles_[s] = {a, d, c}, triangles_[t] = {d, b, c};
-  link(s), link(t);
+  unlink(s);
+  unlink(t);
+  triangles_[s] = {a, d, c};
+  triangles_[t] = {d, b, c};
+  link(s);
+  link(t);
   return true;
 }
 
@@ -145,12 +148,15 @@ bool Patch::divide() {
     };
     if (!far(a) || !far(b) || !far(c)) continue;
     const auto m = static_cast<std::uint32_t>(at_.size());
-    at_.push_back(middle), size_.push_back(size), between_.push_back({a, b, c});
+    at_.push_back(middle);
+    size_.push_back(size);
+    between_.push_back({a, b, c});
     unlink(t);
     triangles_[t] = {a, b, m};
     triangles_.insert(triangles_.end(), {{b, c, m}, {c, a, m}});
-    link(t), link(static_cast<std::uint32_t>(triangles_.size()) - 2),
-        link(static_cast<std::uint32_t>(triangles_.size()) - 1);
+    link(t);
+    link(static_cast<std::uint32_t>(triangles_.size()) - 2);
+    link(static_cast<std::uint32_t>(triangles_.size()) - 1);
     if (double(triangles_.size()) > most_triangles) return false;
     divided = true;
   }
@@ -163,8 +169,10 @@ void Patch::fair() {
   const auto inner = static_cast<Eigen::Index>(at_.size() - rim_);
   if (inner == 0) return;
   std::vector<std::vector<std::uint32_t>> around(at_.size());
-  for (const auto& [edge, triangles] : sides_)
-    around[edge.first].push_back(edge.second), around[edge.second].push_back(edge.first);
+  for (const auto& [edge, triangles] : sides_) {
+    around[edge.first].push_back(edge.second);
+    around[edge.second].push_back(edge.first);
+  }
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::MatrixX3d fixed = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(at_.size()), 3);
   for (std::uint32_t v = 0; v < at_.size(); ++v) {

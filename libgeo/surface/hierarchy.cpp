@@ -32,7 +32,10 @@ class Groups {
   Groups(std::span<const double> volume, std::span<const Bond> bonds)
       : volume_(volume.begin(), volume.end()), shared_(volume.size()), sets_(volume.size()), count_(volume.size()) {
     require_pieces(volume.size(), bonds);
-    for (const Bond& bond : bonds) shared_[bond.a][bond.b] += bond.area, shared_[bond.b][bond.a] += bond.area;
+    for (const Bond& bond : bonds) {
+      shared_[bond.a][bond.b] += bond.area;
+      shared_[bond.b][bond.a] += bond.area;
+    }
     for (std::uint32_t g = 0; g < volume.size(); ++g)
       if (!shared_[g].empty()) queue_.insert({volume_[g], g});
   }
@@ -51,17 +54,22 @@ class Groups {
     std::uint32_t best = shared_[g].begin()->first;
     double most = merit(shared_[g].begin()->second, volume_[best]);
     for (const auto& [other, area] : shared_[g])
-      if (const double value = merit(area, volume_[other]); value > most) best = other, most = value;
+      if (const double value = merit(area, volume_[other]); value > most) {
+        best = other;
+        most = value;
+      }
     merge(std::min(g, best), std::max(g, best));
   }
 
  private:
   void merge(std::uint32_t kept, std::uint32_t gone) {
-    queue_.erase({volume_[kept], kept}), queue_.erase({volume_[gone], gone});
+    queue_.erase({volume_[kept], kept});
+    queue_.erase({volume_[gone], gone});
     for (const auto& [other, area] : shared_[gone]) {
       shared_[other].erase(gone);
       if (other == kept) continue;
-      shared_[kept][other] += area, shared_[other][kept] += area;
+      shared_[kept][other] += area;
+      shared_[other][kept] += area;
     }
     shared_[gone].clear();
     volume_[kept] += volume_[gone];
@@ -84,12 +92,15 @@ std::vector<Bond> summed(std::span<const Bond> bonds, const std::vector<std::uin
     const auto a = cluster[bond.a], b = cluster[bond.b];
     if (a == b) continue;
     Bond& sum = sums[std::minmax(a, b)];
-    sum.area += bond.area, sum.section += bond.section, sum.centroid += bond.area * bond.centroid;
+    sum.area += bond.area;
+    sum.section += bond.section;
+    sum.centroid += bond.area * bond.centroid;
     sum.normal += (a < b ? bond.area : -bond.area) * bond.normal;
   }
   std::vector<Bond> result;
   for (auto& [pair, sum] : sums) {
-    sum.a = pair.first, sum.b = pair.second;
+    sum.a = pair.first;
+    sum.b = pair.second;
     if (sum.area > 0) sum.centroid /= sum.area;
     sum.normal = sum.normal.norm() > 0 ? Vec3(sum.normal.normalized()) : Vec3(Vec3::Zero());
     result.push_back(sum);
@@ -109,7 +120,10 @@ std::vector<std::uint32_t> numbered(const std::vector<std::uint32_t>& group, std
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return of_group[a] > of_group[b]; });
   std::vector<std::uint32_t> number(group.size(), 0), cluster(group.size());
   sums.clear();
-  for (std::uint32_t c = 0; c < order.size(); ++c) number[order[c]] = c, sums.push_back(of_group[order[c]]);
+  for (std::uint32_t c = 0; c < order.size(); ++c) {
+    number[order[c]] = c;
+    sums.push_back(of_group[order[c]]);
+  }
   for (std::size_t p = 0; p < group.size(); ++p) cluster[p] = number[group[p]];
   return cluster;
 }

@@ -12,7 +12,8 @@ MassProperties mass_properties(const TriangleMesh& mesh) {
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3 p = mesh.vertices[a] - o, q = mesh.vertices[b] - o, r = mesh.vertices[c] - o, s = p + q + r;
     const double v = p.dot(q.cross(r));
-    six += v, first += v * s / 4;
+    six += v;
+    first += v * s / 4;
     second += v / 120 * (p * p.transpose() + q * q.transpose() + r * r.transpose() + s * s.transpose());
   }
   MassProperties result{six / 6, o, Mat3::Zero()};

@@ -48,7 +48,10 @@ std::vector<Shell> find_shells(const Complex& k, std::vector<std::int32_t>& of_s
         for (int e = 0; e < 3; ++e) {
           const Side n = k.neighbor(s, e);
           auto& mark = of_side[n.face.index() * 2 + n.which];
-          if (mark < 0) mark = id, stack.push_back(n);
+          if (mark < 0) {
+            mark = id;
+            stack.push_back(n);
+          }
         }
       }
       std::sort(shell.sides.begin(), shell.sides.end());
@@ -84,7 +87,10 @@ std::uint32_t outward(const Complex& k, const std::vector<Shell>& shells, std::v
     for (const auto s : of_group)
       for (const Side side : shells[s].sides)
         for (const VertexId v : k.face(side.face).v) {
-          if (!extreme.valid() || farther(v, extreme)) extreme = v, touching.clear();
+          if (!extreme.valid() || farther(v, extreme)) {
+            extreme = v;
+            touching.clear();
+          }
           if (v == extreme && (touching.empty() || touching.back() != s)) touching.push_back(s);
         }
     of_group = touching;
@@ -141,7 +147,10 @@ std::vector<std::uint32_t> find_owners(const Complex& k, const std::vector<Shell
         const auto c = k.corners(side.face);
         const Vec3 middle = (c[0] + c[1] + c[2]) / 3;
         if (trees[o].closest(middle).distance == 0) continue;
-        if (trees[o].inside(middle)) best = shells[o].volume, owner[s] = o;
+        if (trees[o].inside(middle)) {
+          best = shells[o].volume;
+          owner[s] = o;
+        }
         break;
       }
     }
@@ -188,7 +197,9 @@ std::vector<std::vector<Side>> sides_by_piece(const Pieces& pieces) {
 TriangleMesh mesh_of_sides(const Complex& k, std::span<const Side> sides, std::vector<std::uint32_t>& index,
                            std::vector<SurfaceVertexId>& vertex_of) {
   TriangleMesh mesh;
-  mesh.triangles.reserve(sides.size()), mesh.patch.reserve(sides.size()), mesh.source.reserve(sides.size());
+  mesh.triangles.reserve(sides.size());
+  mesh.patch.reserve(sides.size());
+  mesh.source.reserve(sides.size());
   vertex_of.clear();
   for (const Side side : sides) {
     const auto& face = k.face(side.face);

@@ -45,7 +45,8 @@ class Pass {
       if (triangles.size() > most_triangles)
         throw InputError("edges so short would make more than 20 million triangles; let them be longer");
     }
-    mesh_.triangles.swap(triangles), mesh_.source.swap(source);
+    mesh_.triangles.swap(triangles);
+    mesh_.source.swap(source);
     return true;
   }
 
@@ -91,7 +92,8 @@ class Pass {
 
 TriangleMesh refined(const TriangleMesh& mesh, double longest) {
   TriangleMesh fine;
-  fine.vertices = mesh.vertices, fine.triangles = mesh.triangles;
+  fine.vertices = mesh.vertices;
+  fine.triangles = mesh.triangles;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) fine.source.push_back(i);
   while (Pass(fine, longest).divide()) {
   }

@@ -161,7 +161,8 @@ class SmoothPatches {
     }
     const bool all = t == mesh_.triangles.size();
     while (t > first) index_.erase(--t);
-    mesh_.vertices.resize(vertices), mesh_.triangles.resize(first);
+    mesh_.vertices.resize(vertices);
+    mesh_.triangles.resize(first);
     return all;
   }
 
@@ -184,7 +185,8 @@ void fill_holes(TriangleMesh& mesh, RepairStats& done, bool smooth) {
     add_patch(mesh, rim, {{}, {}, triangles_of(mesh.vertices, polygon)});
     first.push_back(count());
   }
-  done.filled_holes += rims.size(), done.added_triangles += count() - first[0];
+  done.filled_holes += rims.size();
+  done.added_triangles += count() - first[0];
   if (!smooth) return;
   SmoothPatches patches(mesh);
   patches.collect_neighbours(first[0]);
@@ -281,7 +283,10 @@ void drop_loose_vertices(TriangleMesh& mesh) {
     for (const auto v : t) index[v] = 0;
   std::uint32_t count = 0;
   for (std::size_t v = 0; v < index.size(); ++v)
-    if (index[v] == 0) mesh.vertices[count] = mesh.vertices[v], index[v] = count++;
+    if (index[v] == 0) {
+      mesh.vertices[count] = mesh.vertices[v];
+      index[v] = count++;
+    }
   mesh.vertices.resize(count);
   for (auto& t : mesh.triangles)
     for (auto& v : t) v = index[v];

@@ -143,7 +143,9 @@ TriangleMesh make_block(const Vec3& size, double edge) {
         for (int j = 0; j < n[v]; ++j) {
           const auto at = [&](int di, int dj) {
             std::array<int, 3> cell{};
-            cell[axis] = high ? n[axis] : 0, cell[u] = i + di, cell[v] = j + dj;
+            cell[axis] = high ? n[axis] : 0;
+            cell[u] = i + di;
+            cell[v] = j + dj;
             return vertex_at(cell);
           };
           std::uint32_t a = at(0, 0), b = at(1, 0), c = at(1, 1), d = at(0, 1);

@@ -18,7 +18,8 @@ std::vector<std::uint32_t> nearest_triangles(const TriangleMesh& mesh, std::span
 
 std::vector<FaceId> faces_on_segment(const Complex& complex, const Vec3& p, const Vec3& q) {
   Box3 box;
-  box.add(p), box.add(q);
+  box.add(p);
+  box.add(q);
   std::vector<FaceId> near;
   complex.faces_near(box, near);
   std::erase_if(near, [&](FaceId f) {

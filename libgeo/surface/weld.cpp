@@ -21,7 +21,10 @@ std::vector<std::uint32_t> open_vertices(const TriangleMesh& mesh) {
   std::vector<std::uint32_t> open;
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
     while (end < edges.size() && edges[end] == edges[i]) ++end;
-    if (end - i == 1) open.push_back(edges[i].first), open.push_back(edges[i].second);
+    if (end - i == 1) {
+      open.push_back(edges[i].first);
+      open.push_back(edges[i].second);
+    }
   }
   std::sort(open.begin(), open.end());
   open.erase(std::unique(open.begin(), open.end()), open.end());

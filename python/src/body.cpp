@@ -62,7 +62,10 @@ py::tuple carriers_of(Body& self, std::int64_t vertex) {
   geo::carrier_nodes(self.body, geo::SurfaceVertexId(static_cast<std::uint32_t>(vertex)), carriers);
   std::vector<std::uint32_t> nodes;
   std::vector<double> distances;
-  for (const auto& [node, distance] : carriers) nodes.push_back(node.value), distances.push_back(distance);
+  for (const auto& [node, distance] : carriers) {
+    nodes.push_back(node.value);
+    distances.push_back(distance);
+  }
   return py::make_tuple(moved<std::uint32_t>(std::move(nodes)), moved<double>(std::move(distances)));
 }
 
@@ -78,8 +81,10 @@ py::tuple all_carriers(Body& self) {
       if (!self.body.surface.alive(geo::SurfaceVertexId(v))) continue;
       carriers.clear();
       geo::carrier_nodes(self.body, geo::SurfaceVertexId(v), carriers);
-      for (const auto& [node, distance] : carriers)
-        nodes.push_back(static_cast<std::int32_t>(node.value)), distances.push_back(distance);
+      for (const auto& [node, distance] : carriers) {
+        nodes.push_back(static_cast<std::int32_t>(node.value));
+        distances.push_back(distance);
+      }
       indptr.push_back(static_cast<std::int64_t>(nodes.size()));
     }
   }
@@ -89,7 +94,9 @@ py::tuple all_carriers(Body& self) {
 
 geo::BodyOptions body_options(int k, double guide_spacing, const std::string& method) {
   geo::BodyOptions options;
-  options.k = k, options.guide_spacing = guide_spacing, options.method = neighbor_method(method);
+  options.k = k;
+  options.guide_spacing = guide_spacing;
+  options.method = neighbor_method(method);
   return options;
 }
 
@@ -142,7 +149,9 @@ py::list history_of(Body& self) {
   py::list out;
   for (const auto& h : self.body.history) {
     py::dict entry;
-    entry["tool"] = h.tool, entry["version"] = h.version, entry["arguments"] = h.arguments;
+    entry["tool"] = h.tool;
+    entry["version"] = h.version;
+    entry["arguments"] = h.arguments;
     entry["inputs"] = py::tuple(py::cast(h.inputs));
     out.append(std::move(entry));
   }

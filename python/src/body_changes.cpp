@@ -49,7 +49,8 @@ BodyDelta split(Body& self, BodyFront& front, py::object next, const geo::CrackO
     out.delta = geo::split(self.body, front.state, points, options, &out.stats);
   }
   self.changed();
-  out.body = self.id, out.version = self.version;
+  out.body = self.id;
+  out.version = self.version;
   return out;
 }
 
@@ -65,7 +66,8 @@ BodyDelta update(Body& self, const geo::Complex& surface, py::object progress) {
   });
   self.body = std::move(after);
   self.changed();
-  out.body = self.id, out.version = self.version;
+  out.body = self.id;
+  out.version = self.version;
   return out;
 }
 
@@ -92,7 +94,8 @@ BodyDelta resize(Body& self, py::object nodes, py::object radii) {
     out.delta = geo::resize_nodes(self.body, changes);
   }
   self.changed();
-  out.body = self.id, out.version = self.version;
+  out.body = self.id;
+  out.version = self.version;
   return out;
 }
 
@@ -141,8 +144,10 @@ void bind_delta(py::module_& module) {
           [](const BodyDelta& d) {
             std::vector<std::uint32_t> nodes;
             std::vector<double> radii;
-            for (const auto& [node, radius] : d.delta.resized_nodes)
-              nodes.push_back(node.value), radii.push_back(radius);
+            for (const auto& [node, radius] : d.delta.resized_nodes) {
+              nodes.push_back(node.value);
+              radii.push_back(radius);
+            }
             return py::make_tuple(moved<std::uint32_t>(std::move(nodes)), moved<double>(std::move(radii)));
           },
           "Old nodes with another support radius, uint32, and their old radii, float64.")

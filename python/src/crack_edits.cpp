@@ -65,8 +65,12 @@ std::shared_ptr<Delta> remesh(Complex& self, const py::object& region, py::objec
   });
   if (test.error) std::rethrow_exception(test.error);
   auto& stats = delta->stats;
-  stats["faces"] = done.faces, stats["flips"] = done.flips, stats["collapses"] = done.collapses;
-  stats["moves"] = done.moves, stats["divisions"] = done.divisions, stats["refused"] = done.refused;
+  stats["faces"] = done.faces;
+  stats["flips"] = done.flips;
+  stats["collapses"] = done.collapses;
+  stats["moves"] = done.moves;
+  stats["divisions"] = done.divisions;
+  stats["refused"] = done.refused;
   stats["seconds"] = done.seconds;
   return delta;
 }
@@ -90,8 +94,11 @@ std::shared_ptr<Delta> roughen(Complex& self, py::object progress, py::kwargs gi
     return geo::roughen(self.complex, self.states(), options, &done, report);
   });
   auto& stats = delta->stats;
-  stats["divisions"] = done.divisions, stats["moves"] = done.moves, stats["lowered"] = done.lowered;
-  stats["refused"] = done.refused, stats["seconds"] = done.seconds;
+  stats["divisions"] = done.divisions;
+  stats["moves"] = done.moves;
+  stats["lowered"] = done.lowered;
+  stats["refused"] = done.refused;
+  stats["seconds"] = done.seconds;
   return delta;
 }
 
@@ -108,7 +115,9 @@ std::shared_ptr<Delta> decimate(Complex& self, py::object progress, py::kwargs g
     return geo::decimate(self.complex, self.states(), options, &done, report);
   });
   auto& stats = delta->stats;
-  stats["collapses"] = done.collapses, stats["refused"] = done.refused, stats["seconds"] = done.seconds;
+  stats["collapses"] = done.collapses;
+  stats["refused"] = done.refused;
+  stats["seconds"] = done.seconds;
   return delta;
 }
 

@@ -39,7 +39,9 @@ void make_rows(Graph& self) {
   py::object indices = moved<std::int32_t>(std::move(arrays.indices)),
              distances = moved<float>(std::move(arrays.distances)),
              indptr = moved<std::int64_t>(std::move(arrays.indptr));
-  self.indices = std::move(indices), self.distances = std::move(distances), self.indptr = std::move(indptr);
+  self.indices = std::move(indices);
+  self.distances = std::move(distances);
+  self.indptr = std::move(indptr);
 }
 
 // The fields of neighbours that neighbor_arrays() leaves out.
@@ -50,12 +52,15 @@ void make_fields(Graph& self) {
   {
     const GilRelease release;
     for (std::size_t i = 0; i < self.nodes->size(); ++i)
-      for (const geo::Neighbor n : self.graph.neighbors(*self.nodes, geo::NodeId(i)))
-        warped.push_back(n.warped), hidden.push_back(n.hidden);
+      for (const geo::Neighbor n : self.graph.neighbors(*self.nodes, geo::NodeId(i))) {
+        warped.push_back(n.warped);
+        hidden.push_back(n.hidden);
+      }
   }
   static_assert(sizeof(bool) == 1);
   py::object w = moved<std::uint32_t>(std::move(warped)), h = moved<bool>(std::move(hidden));
-  self.hidden = std::move(h), self.warped = std::move(w);
+  self.hidden = std::move(h);
+  self.warped = std::move(w);
 }
 
 void make_edges(Graph& self) {
@@ -65,14 +70,18 @@ void make_edges(Graph& self) {
   {
     const GilRelease release;
     const auto arrays = geo::edge_arrays(*self.nodes, self.graph);
-    edges.reserve(arrays.indices.size() / 2), lengths.reserve(arrays.indices.size() / 2);
+    edges.reserve(arrays.indices.size() / 2);
+    lengths.reserve(arrays.indices.size() / 2);
     for (std::size_t i = 0; i + 1 < arrays.indptr.size(); ++i)
       for (auto at = arrays.indptr[i]; at < arrays.indptr[i + 1]; ++at)
-        if (i < arrays.indices[at])
-          edges.push_back({static_cast<std::uint32_t>(i), arrays.indices[at]}), lengths.push_back(arrays.distances[at]);
+        if (i < arrays.indices[at]) {
+          edges.push_back({static_cast<std::uint32_t>(i), arrays.indices[at]});
+          lengths.push_back(arrays.distances[at]);
+        }
   }
   py::object e = moved<std::uint32_t>(std::move(edges), {2}), l = moved<float>(std::move(lengths));
-  self.edge_lengths = std::move(l), self.edges = std::move(e);
+  self.edge_lengths = std::move(l);
+  self.edges = std::move(e);
 }
 
 geo::NodeId node_from(const Graph& self, std::int64_t node) {

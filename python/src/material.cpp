@@ -29,9 +29,15 @@ geo::Material changed(geo::Material m, const py::kwargs& given) {
   m.model = static_cast<geo::ElasticModel>(choice(k.object("model"), model_names, static_cast<int>(m.model), "model"));
   m.discretisation = static_cast<geo::Discretisation>(
       choice(k.object("discretisation"), discretisation_names, static_cast<int>(m.discretisation), "discretisation"));
-  k.take("young", m.young), k.take("poisson", m.poisson), k.take("density", m.density);
-  k.take("volume_term", m.volume_term), k.take("damping", m.damping), k.take("viscosity", m.viscosity);
-  k.take("mode_penalty", m.mode_penalty), k.take("yield_", m.yield), k.take("creep", m.creep);
+  k.take("young", m.young);
+  k.take("poisson", m.poisson);
+  k.take("density", m.density);
+  k.take("volume_term", m.volume_term);
+  k.take("damping", m.damping);
+  k.take("viscosity", m.viscosity);
+  k.take("mode_penalty", m.mode_penalty);
+  k.take("yield_", m.yield);
+  k.take("creep", m.creep);
   k.take("max_plastic", m.max_plastic);
   k.finish();
   geo::require_material(m);

@@ -123,7 +123,10 @@ geo::SampleOptions sample_options(const SampleArguments& a, double diagonal) {
   else if (a.pattern != "jitter")
     throw geo::InputError("pattern: '" + a.pattern + "' is unknown; give 'jitter', 'blue' or 'grid'");
   if (a.across < 0 || a.across > 100) throw geo::InputError("across: give an integer from 0 to 100");
-  options.levels = a.levels, options.jitter = a.jitter, options.support = a.support, options.seed = a.seed;
+  options.levels = a.levels;
+  options.jitter = a.jitter;
+  options.support = a.support;
+  options.seed = a.seed;
   options.across = a.across;
   return options;
 }

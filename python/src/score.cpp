@@ -48,7 +48,8 @@ std::vector<geo::TriangleMesh> sheets_from(const py::object& sheets) {
   const auto add = [&](py::handle item) {
     const auto& mesh = mesh_argument(item, "sheets")->mesh;
     out.emplace_back();
-    out.back().vertices = mesh.vertices, out.back().triangles = mesh.triangles;
+    out.back().vertices = mesh.vertices;
+    out.back().triangles = mesh.triangles;
   };
   if (py::isinstance<py::list>(sheets) || py::isinstance<py::tuple>(sheets))
     for (const auto item : sheets) add(item);

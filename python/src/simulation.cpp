@@ -31,7 +31,8 @@ void require_whole(geo::TriangleMesh& mesh, const std::string& name) {
   }
   if (std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; }))
     throw geo::InputError(name + ": is cut already; a scene begins with whole models");
-  mesh.patch.clear(), mesh.site.clear();
+  mesh.patch.clear();
+  mesh.site.clear();
 }
 
 std::string bytes_of(const geo::TriangleMesh& mesh) {

@@ -99,7 +99,9 @@ py::dict motions_of(Simulation& self) {
       if (!objects[i].motion.keys.empty())
         out[py::str(std::string(kind) + "." + std::to_string(i))] = keys_to(objects[i].motion);
   };
-  add("blade", scene.blades), add("grip", scene.grips), add("obstacle", scene.obstacles);
+  add("blade", scene.blades);
+  add("grip", scene.grips);
+  add("obstacle", scene.obstacles);
   return out;
 }
 

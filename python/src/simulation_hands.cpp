@@ -48,14 +48,16 @@ Handle<Kind::blade> add_blade(Simulation& self, py::object points, py::object po
 
 Handle<Kind::grip> add_grip(Simulation& self, py::object lo, py::object hi) {
   geo::Grip grip;
-  grip.lo = point_from(lo, "lo"), grip.hi = point_from(hi, "hi");
+  grip.lo = point_from(lo, "lo");
+  grip.hi = point_from(hi, "hi");
   if (!(grip.lo.array() <= grip.hi.array()).all()) throw geo::InputError("lo: a corner is above that of hi");
   return added<Kind::grip>(self, [&](geo::Simulation& run) { return run.add_grip(std::move(grip)); });
 }
 
 Handle<Kind::pull> add_pull(Simulation& self, py::object at, py::object to, double stiffness, py::object node) {
   geo::Pull pull;
-  pull.point = point_from(at, "point"), pull.stiffness = stiffness;
+  pull.point = point_from(at, "point");
+  pull.stiffness = stiffness;
   const auto end = point_from(to, "to");
   if (!(stiffness >= 0 && stiffness <= 1e15)) throw geo::InputError("stiffness: give a number from 0 to 1e15");
   if (!node.is_none()) {
@@ -89,8 +91,11 @@ void change(Simulation& self, const py::kwargs& values) {
     keywords.take(name, value);
     if (!std::isnan(value)) out = value;
   };
-  take("young", changes.young), take("damping", changes.damping), take("friction", changes.friction);
-  take("accuracy", changes.accuracy), take("step", changes.dt);
+  take("young", changes.young);
+  take("damping", changes.damping);
+  take("friction", changes.friction);
+  take("accuracy", changes.accuracy);
+  take("step", changes.dt);
   if (const auto gravity = keywords.object("gravity"); !gravity.is_none())
     changes.gravity = point_from(gravity, "gravity");
   keywords.finish();

@@ -30,7 +30,10 @@ py::tuple stencil(DeformingSolid& self, std::int64_t node) {
   self.solid.gradient_stencil(geo::NodeId(static_cast<std::uint32_t>(node)), out);
   std::vector<std::uint32_t> nodes;
   Vectors weights;
-  for (const auto& [j, g] : out) nodes.push_back(j.value), weights.push_back(g);
+  for (const auto& [j, g] : out) {
+    nodes.push_back(j.value);
+    weights.push_back(g);
+  }
   return py::make_tuple(moved<std::uint32_t>(std::move(nodes)), moved_points(std::move(weights)));
 }
 
@@ -70,7 +73,8 @@ void require_environment(const DeformingSolid& self, const geo::Environment& e) 
       throw geo::InputError(std::string("environment: ") + name + " has " + std::to_string(size) +
                             " values, the solid " + std::to_string(n) + " nodes");
   };
-  require("fixed", e.fixed.size()), require("load", e.load.size());
+  require("fixed", e.fixed.size());
+  require("load", e.load.size());
 }
 
 geo::StepReport step(DeformingSolid& self, State& state, double dt, const geo::Environment& environment,

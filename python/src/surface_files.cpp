@@ -86,8 +86,10 @@ std::shared_ptr<Complex> with_fronts(geo::SurfaceFile&& file, const std::string&
 
 // Removes the sites of a surface that no crack has cut: frames of a run have them from the first.
 void forget_sites(geo::TriangleMesh& mesh) {
-  if (!std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; }))
-    mesh.patch.clear(), mesh.site.clear();
+  if (!std::any_of(mesh.patch.begin(), mesh.patch.end(), [](auto patch) { return patch != 0; })) {
+    mesh.patch.clear();
+    mesh.site.clear();
+  }
 }
 
 std::shared_ptr<Solid> solid_of(geo::SurfaceFile&& file, const std::string& name) {

@@ -19,7 +19,8 @@ int main() {
     for (geo::Vec3& p : line) p.z() -= 0.25;
     geo::SplitStats stats;
     const geo::BodyDelta delta = geo::split(body, front, line, {}, &stats);
-    cut += stats.edges_cut, added += stats.nodes_added;
+    cut += stats.edges_cut;
+    added += stats.nodes_added;
     for (const auto& ids : delta.detached) std::printf("step %d: %zu nodes detached\n", step, ids.size());
   }
 

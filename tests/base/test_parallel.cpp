@@ -56,9 +56,19 @@ TEST_CASE("in a serial scope, loops and pairs run in the calling thread", "[para
   const auto self = std::this_thread::get_id();
   std::atomic<int> elsewhere{0}, calls{0};
   const auto run = [&] {
-    parallel_for(1000, 1, [&](std::size_t, std::size_t) { ++calls, elsewhere += std::this_thread::get_id() != self; });
-    parallel_invoke([&] { ++calls, elsewhere += std::this_thread::get_id() != self; },
-                    [&] { ++calls, elsewhere += std::this_thread::get_id() != self; });
+    parallel_for(1000, 1, [&](std::size_t, std::size_t) {
+      ++calls;
+      elsewhere += std::this_thread::get_id() != self;
+    });
+    parallel_invoke(
+        [&] {
+          ++calls;
+          elsewhere += std::this_thread::get_id() != self;
+        },
+        [&] {
+          ++calls;
+          elsewhere += std::this_thread::get_id() != self;
+        });
   };
   {
     const SerialScope outer;

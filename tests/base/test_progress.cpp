@@ -12,7 +12,8 @@ TEST_CASE("reports reach the listener, who can cancel", "[progress]") {
   std::string phase;
   std::size_t sum = 0;
   const Progress listener = [&](std::string_view name, std::size_t done, std::size_t total) {
-    phase = name, sum += done;
+    phase = name;
+    sum += done;
     return done < total;
   };
   report(listener, "sampling", 1, 3);

@@ -54,7 +54,8 @@ TEST_CASE("directions are unit vectors, as many on each side of any plane", "[ra
   for (int i = 0; i < n; ++i) {
     const Vec3 d = random.direction();
     REQUIRE(d.norm() == Approx(1).margin(1e-12));
-    mean += d / n, moments += d * d.transpose() / n;
+    mean += d / n;
+    moments += d * d.transpose() / n;
   }
   CHECK(mean.norm() < 0.03);
   CHECK((moments - Mat3::Identity() / 3).norm() < 0.03);

@@ -68,7 +68,8 @@ TEST_CASE("boxes on a grid meet if and only if they have a common grid point", "
     const Vec3 p = point(), q = point(), r = point();
     const Box3 a = box_of(p, q, r);
     Box3 b;
-    b.add(point()), b.add(point());
+    b.add(point());
+    b.add(point());
     bool common = false;
     for (int x = 0; x < 4; ++x)
       for (int y = 0; y < 4; ++y)

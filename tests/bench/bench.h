@@ -28,7 +28,8 @@ inline double least(const std::function<void()>& prepare, const std::function<vo
     const double start = cpu_seconds();
     work();
     const double t = cpu_seconds() - start;
-    best = std::min(best, t), spent += t;
+    best = std::min(best, t);
+    spent += t;
   }
   return best;
 }

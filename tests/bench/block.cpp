@@ -40,13 +40,19 @@ int block(const Options& options) {
         const auto delta = geo::advance(k, front, rows[s], {}, &work);
         const double middle = cpu_seconds();
         geo::remesh(k, delta.new_faces, fronts);
-        one.cut += middle - start, one.remesh += cpu_seconds() - middle, one.met += work.triangles_cut;
+        one.cut += middle - start;
+        one.remesh += cpu_seconds() - middle;
+        one.met += work.triangles_cut;
       }
     } catch (const geo::GeometryError&) {
       ++refused;
     }
     for (Window* w : {&here, c <= edge ? &first : nullptr, c > cuts - edge ? &last : nullptr})
-      if (w) w->cut += one.cut, w->remesh += one.remesh, w->met += one.met;
+      if (w) {
+        w->cut += one.cut;
+        w->remesh += one.remesh;
+        w->met += one.met;
+      }
     if (!options.json && c % (5 * edge) == 0) {
       const double met = double(std::max<std::size_t>(here.met, 1));
       std::printf("%5d %8u %9.2f | %9zu %9.1f %10.1f\n", c, k.live_face_count(), low_angle(k), here.met,

@@ -69,10 +69,10 @@ void measure_errors(const Options& options, Figures& figures) {
       std::snprintf(what, sizeof what, "guides %g spacings apart", spacing);
       show(what, with, guides.size());
       if (spacing != geo::GuideOptions().spacing) continue;
-      figures["concave_mean_error_" + prism.name] = bare.mean(),
-                                      figures["concave_worst_error_" + prism.name] = bare.worst;
-      figures["concave_mean_error_guided_" + prism.name] = with.mean(),
-                                             figures["concave_worst_error_guided_" + prism.name] = with.worst;
+      figures["concave_mean_error_" + prism.name] = bare.mean();
+      figures["concave_worst_error_" + prism.name] = bare.worst;
+      figures["concave_mean_error_guided_" + prism.name] = with.mean();
+      figures["concave_worst_error_guided_" + prism.name] = with.worst;
       figures["concave_missed_" + prism.name] = double(bare.missed) / double(bare.count);
       figures["concave_missed_guided_" + prism.name] = double(with.missed) / double(with.count);
       for (const auto& [key, value] : {std::pair("concave_mean_error", bare.mean()),
@@ -105,8 +105,8 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
   Soup crack;
   for (int k = 0; k < 16; ++k) {
     const double s0 = k / 16.0, s1 = (k + 1) / 16.0;
-    crack.push_back({point(s0, 0), point(s1, 0), point(s1, 1)}),
-        crack.push_back({point(s0, 0), point(s1, 1), point(s0, 1)});
+    crack.push_back({point(s0, 0), point(s1, 0), point(s1, 1)});
+    crack.push_back({point(s0, 0), point(s1, 1), point(s0, 1)});
   }
   std::vector<geo::Guide> front;
   for (int k = 0; k < 32; ++k)
@@ -151,11 +151,16 @@ void measure_cost(std::size_t count, const Options& options, Figures& figures) {
     }
   const double bytes[] = {double(whole[0].bytes()) / n, double(whole[1].bytes()) / n};
   geo::set_threads(before);
-  figures["nodes"] = n, figures["guides"] = double(guides);
-  figures["concave_bytes_per_node"] = bytes[0], figures["concave_bytes_per_node_guided"] = bytes[1];
-  figures["concave_graph_seconds"] = edges[0], figures["concave_graph_seconds_guided"] = edges[1] + place;
-  figures["concave_rows_seconds"] = rows[0], figures["concave_rows_seconds_guided"] = rows[1];
-  figures["concave_update_seconds"] = update[0], figures["concave_update_seconds_guided"] = update[1];
+  figures["nodes"] = n;
+  figures["guides"] = double(guides);
+  figures["concave_bytes_per_node"] = bytes[0];
+  figures["concave_bytes_per_node_guided"] = bytes[1];
+  figures["concave_graph_seconds"] = edges[0];
+  figures["concave_graph_seconds_guided"] = edges[1] + place;
+  figures["concave_rows_seconds"] = rows[0];
+  figures["concave_rows_seconds_guided"] = rows[1];
+  figures["concave_update_seconds"] = update[0];
+  figures["concave_update_seconds_guided"] = update[1];
   if (options.json) return;
   std::printf("the cost, %zu nodes in a ribbed ball with a slit to its axis, %zu guides\n", c.nodes.size(), guides);
   std::printf("  %-44s %10s %10s\n", "", "without", "with");

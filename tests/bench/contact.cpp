@@ -26,7 +26,8 @@ int contact(const Options& options) {
     geo::Body body = geo::build_body(geo::Complex::from_skin(mesh), geo::sample_nodes(mesh, sampling),
                                      {26, geo::NeighborMethod::automatic});
     geo::Material material;
-    material.young = 2e4, material.damping = 1;
+    material.young = 2e4;
+    material.damping = 1;
     geo::Solid solid(body.nodes, body.graph, material);
     geo::State state{std::vector<geo::Vec3>(solid.size(), geo::Vec3::Zero()),
                      std::vector<geo::Vec3>(solid.size(), geo::Vec3::Zero())};
@@ -71,13 +72,17 @@ int contact(const Options& options) {
       double one = cpu_seconds() - start;
       start = cpu_seconds();
       solid.step_implicit(state, 1.0 / 24, environment);
-      moving += cpu_seconds() - start, start = cpu_seconds();
+      moving += cpu_seconds() - start;
+      start = cpu_seconds();
       work += surface.finish_step(std::move(contact), solid, state.displacement);
       one += cpu_seconds() - start;
-      touching += one, worst = std::max(worst, one);
+      touching += one;
+      worst = std::max(worst, one);
     }
     geo::TriangleMesh end;
-    end.vertices = surface.positions(), end.triangles = surface.surface().triangles, end.site = surface.surface().site;
+    end.vertices = surface.positions();
+    end.triangles = surface.surface().triangles;
+    end.site = surface.surface().site;
     print({{"nodes", double(solid.size())},
            {"triangles", double(end.triangles.size())},
            {"nodes_ms_a_step", 1e3 * moving / steps},

@@ -34,9 +34,10 @@ void contact_of_sheet(const Options& options) {
     std::vector<geo::Triangle> triangles;
     const auto row = [&](std::size_t i, std::size_t j) { return static_cast<std::uint32_t>(i * (n + 1) + j); };
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        triangles.push_back({row(i, j), row(i + 1, j), row(i, j + 1)}),
-            triangles.push_back({row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)});
+      for (std::size_t j = 0; j < n; ++j) {
+        triangles.push_back({row(i, j), row(i + 1, j), row(i, j + 1)});
+        triangles.push_back({row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)});
+      }
     const double edge = 1.0 / double(n), gap = 1e-4 * edge;
     // Folds half an edge apart where they open widest bulge into each other; all of it falls as
     // well.
@@ -51,7 +52,10 @@ void contact_of_sheet(const Options& options) {
     geo::BoundedMotionStats report;
     std::vector<geo::Vec3> at;
     const geo::SurfaceMotion motion{triangles, representative, from, to, gap, 2 * gap};
-    const auto move = [&] { report = {}, at = geo::move_without_crossing(motion, false, &report); };
+    const auto move = [&] {
+      report = {};
+      at = geo::move_without_crossing(motion, false, &report);
+    };
     const double moving = least([] {}, move, 5);
     print({{"triangles", double(triangles.size())},
            {"pairs", double(own_pairs)},

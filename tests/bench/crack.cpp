@@ -81,7 +81,10 @@ Row measure(const std::string& name, const geo::TriangleMesh& model) {
       geo::FrontState front = geo::begin_front(fronts[0], false, 1);
       const double start = cpu_seconds();
       for (int s = 1; s <= steps; ++s) geo::advance(k, front, fronts[static_cast<std::size_t>(s)], {}, &stats);
-      if (const double t = cpu_seconds() - start; t < row.progressive) row.progressive = t, row.stats = stats;
+      if (const double t = cpu_seconds() - start; t < row.progressive) {
+        row.progressive = t;
+        row.stats = stats;
+      }
     }
     row.pieces = geo::find_pieces(k).count;
     lower(row.oneshot, least([&] { k = geo::Complex::from_skin(model); }, [&] { geo::insert_sheet(k, whole, 1); }, 5));

@@ -32,7 +32,10 @@ class CutTimes {
   struct Times {
     double sum = 0;
     int count = 0;
-    void add(double seconds) { sum += seconds, ++count; }
+    void add(double seconds) {
+      sum += seconds;
+      ++count;
+    }
     double mean() const { return sum / std::max(1, count); }
   };
   Times cut_, plain_;

@@ -51,7 +51,12 @@ struct Row {
   std::size_t made = 0, failed = 0, wrong = 0, bytes = 0, faces = 0;
   double seconds = 0;
   Row& operator+=(const Row& o) {
-    made += o.made, failed += o.failed, wrong += o.wrong, bytes += o.bytes, faces += o.faces, seconds += o.seconds;
+    made += o.made;
+    failed += o.failed;
+    wrong += o.wrong;
+    bytes += o.bytes;
+    faces += o.faces;
+    seconds += o.seconds;
     return *this;
   }
 };
@@ -60,7 +65,8 @@ struct Row {
 bool is_wrong(const Fracture& fracture) {
   for (const Piece& piece : fracture.pieces) {
     geo::TriangleMesh mesh;
-    mesh.vertices = piece.vertices, mesh.triangles = piece.faces;
+    mesh.vertices = piece.vertices;
+    mesh.triangles = piece.faces;
     if (!geo::check_surface(mesh, true).good()) return true;
   }
   return false;

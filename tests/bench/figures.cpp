@@ -30,8 +30,10 @@ void print(const Figures& figures, bool json) {
   }
   std::cout << '{';
   bool first = true;
-  for (const auto& [key, value] : figures)
-    std::cout << (first ? "" : ",") << '"' << key << "\":" << value, first = false;
+  for (const auto& [key, value] : figures) {
+    std::cout << (first ? "" : ",") << '"' << key << "\":" << value;
+    first = false;
+  }
   std::cout << "}\n";
 }
 

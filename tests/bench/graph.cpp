@@ -11,7 +11,8 @@ void add_exponents(const Figures& before, Figures& figures) {
   const auto exponent = [&](const char* name) {
     return growth(before.at(name), figures.at(name), before.at("nodes"), figures.at("nodes"));
   };
-  figures["step_exponent"] = exponent("fixed_crack_seconds"), figures["build_exponent"] = exponent("rebuild_seconds");
+  figures["step_exponent"] = exponent("fixed_crack_seconds");
+  figures["build_exponent"] = exponent("rebuild_seconds");
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ double boost_seconds(const Peer& graph, std::size_t nodes, bool own_heap) {
   const auto color = boost::make_iterator_property_map(colors.begin(), index);
   const auto place = boost::make_iterator_property_map(places.begin(), index);
   Bounded visitor;
-  visitor.touched = &touched, visitor.distance = distances.data();
+  visitor.touched = &touched;
+  visitor.distance = distances.data();
   const std::size_t sources = std::min<std::size_t>(nodes, 20000);
   std::size_t pairs = 0;
   const double seconds = least(
@@ -74,7 +75,8 @@ double boost_seconds(const Peer& graph, std::size_t nodes, bool own_heap) {
           }
           for (const auto v : touched) {
             pairs += v != source && distances[v] < geo::unit_radius;
-            distances[v] = ~0u, colors[v] = boost::white_color;
+            distances[v] = ~0u;
+            colors[v] = boost::white_color;
           }
         }
       },

@@ -58,7 +58,8 @@ void measure_update(const GraphCase& c, const Options& options, Figures& figures
                                            .new_faces = faces},
                                           graph);
     const double seconds = cpu_seconds() - start;
-    cut += update.cut_edges.size(), updated += update.updated_nodes.size();
+    cut += update.cut_edges.size();
+    updated += update.updated_nodes.size();
     return seconds;
   };
 

@@ -52,7 +52,10 @@ class Embree {
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene_);
   }
-  ~Embree() { rtcReleaseScene(scene_), rtcReleaseDevice(device_); }
+  ~Embree() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
   Embree(const Embree&) = delete;
   void blocked(const std::vector<geo::Vec3>& x, const Pairs& pairs, Answers& result) const {
     RTCIntersectContext context;
@@ -61,9 +64,14 @@ class Embree {
       const Eigen::Vector3f p = x[pairs[e].first.index()].cast<float>(),
                             way = x[pairs[e].second.index()].cast<float>() - p;
       RTCRay ray{};
-      ray.org_x = p.x(), ray.org_y = p.y(), ray.org_z = p.z(), ray.dir_x = way.x(), ray.dir_y = way.y(),
+      ray.org_x = p.x();
+      ray.org_y = p.y();
+      ray.org_z = p.z();
+      ray.dir_x = way.x();
+      ray.dir_y = way.y();
       ray.dir_z = way.z();
-      ray.tfar = 1, ray.mask = ~0u;
+      ray.tfar = 1;
+      ray.mask = ~0u;
       rtcOccluded1(scene_, &context, &ray);
       result[e] = ray.tfar < 0;
     }
@@ -118,7 +126,8 @@ std::size_t degenerate_disagreements(std::size_t& asked) {
       for (int i = 0; i < cells * cells; ++i) {
         const auto corner = [&](int u, int v) {
           geo::Vec3 p = geo::Vec3::Constant(at);
-          p[(axis + 1) % 3] = i % cells + u, p[(axis + 2) % 3] = i / cells + v;
+          p[(axis + 1) % 3] = i % cells + u;
+          p[(axis + 2) % 3] = i / cells + v;
           return p;
         };
         if ((i + axis) % 3 == 0) continue;  // holes

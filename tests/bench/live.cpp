@@ -64,7 +64,8 @@ class Strokes {
     live::Stroke s = pose(time);
     if (s.phase == live::Phase::end && !holds_) return undone(s.id);
     const bool begins = !holds_ || id_ != s.id;
-    holds_ = s.phase != live::Phase::end, id_ = s.id;
+    holds_ = s.phase != live::Phase::end;
+    id_ = s.id;
     const auto row = [](const geo::Vec3& p) {
       return "[" + std::to_string(p.x()) + "," + std::to_string(p.y()) + "," + std::to_string(p.z()) + "]";
     };
@@ -139,8 +140,14 @@ Shown show(const std::string& name, double rate, double seconds) {
     }
     if (now > warm) {
       ++frames;
-      if (client.page.kind == 3) ++plain, bytes += double(client.bytes);
-      if (client.page.kind == 2) ++deltas, delta_bytes += double(client.bytes);
+      if (client.page.kind == 3) {
+        ++plain;
+        bytes += double(client.bytes);
+      }
+      if (client.page.kind == 2) {
+        ++deltas;
+        delta_bytes += double(client.bytes);
+      }
       result.pace = client.page.statistics["fps"];
     }
     client.acknowledge();
@@ -152,7 +159,8 @@ Shown show(const std::string& name, double rate, double seconds) {
       if (text.starts_with("{\"knife")) waited = ++input;
     }
   }
-  result.fps = frames / seconds, result.bytes = bytes / std::max(1.0, plain);
+  result.fps = frames / seconds;
+  result.bytes = bytes / std::max(1.0, plain);
   result.delta_bytes = delta_bytes / std::max(1.0, deltas);
   std::sort(latency.begin(), latency.end());
   if (!latency.empty()) result.latency = latency[latency.size() * 95 / 100];
@@ -167,7 +175,10 @@ double throttled_pace(const sim::Setup& s, double seconds) {
   auto start = Clock::now();
   for (int k = 0; k == 0 || seconds_since(start) < seconds; ++k) {
     client.next();
-    if (k == 1) first = client.page.time, start = Clock::now();
+    if (k == 1) {
+      first = client.page.time;
+      start = Clock::now();
+    }
     if (k > 1) passed = (client.page.time - first) * s.scene.frame_rate / seconds_since(start);
     client.acknowledge();
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
@@ -189,8 +200,13 @@ double cut_ratio(const std::string& name, double seconds) {
   for (int frame = 0; frame < seconds * rate; ++frame) {
     live::Stroke stroke = strokes.pose(frame / rate);
     if (stroke.phase != live::Phase::end && stroke.id != last) {
-      stroke.phase = live::Phase::begin, last = stroke.id, holds = true;
-      if (stroke.id > 0 && strokes.is_last(stroke.id - 1)) session.reset(), session.advance();
+      stroke.phase = live::Phase::begin;
+      last = stroke.id;
+      holds = true;
+      if (stroke.id > 0 && strokes.is_last(stroke.id - 1)) {
+        session.reset();
+        session.advance();
+      }
       session.obey(1, stroke);
     } else if (holds) {
       holds = stroke.phase != live::Phase::end;
@@ -213,10 +229,14 @@ int live(const Options& options) {
   const double seconds = 12;
   const auto add = [&](const std::string& name, double rate) {
     const Shown shown = show(name, rate, seconds);
-    figures[name + "_fps"] = shown.fps, figures[name + "_frame_bytes"] = shown.bytes;
-    figures[name + "_delta_bytes"] = shown.delta_bytes, figures[name + "_latency_p95_ms"] = 1e3 * shown.latency;
+    figures[name + "_fps"] = shown.fps;
+    figures[name + "_frame_bytes"] = shown.bytes;
+    figures[name + "_delta_bytes"] = shown.delta_bytes;
+    figures[name + "_latency_p95_ms"] = 1e3 * shown.latency;
   };
-  add("polyp", 120), add("apple", 60), add("letters", 60);
+  add("polyp", 120);
+  add("apple", 60);
+  add("letters", 60);
   figures["latency_p95_ms"] = 1e3 * show("polyp", 60, seconds).latency;
   figures["polyp_cut_step_ratio"] = cut_ratio("polyp", seconds);
   figures["apple_cut_step_ratio"] = cut_ratio("apple", seconds);

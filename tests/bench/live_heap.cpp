@@ -50,9 +50,11 @@ void heap(const std::string& model, Figures& figures) {
     std::size_t triangles = 0;
     for (std::uint32_t f = 0; f < surface.face_count(); ++f)
       for (const int which : {0, 1}) triangles += surface.has({geo::FaceId(f), which});
-    figures[name + "pieces"] = session.pieces(), figures[name + "triangles"] = double(triangles);
+    figures[name + "pieces"] = session.pieces();
+    figures[name + "triangles"] = double(triangles);
     figures[name + "nodes"] = double(session.run().body().nodes.size());
-    figures[name + "frame_ms"] = 1e3 * times.plain(), figures[name + "cut_ms"] = 1e3 * times.cut();
+    figures[name + "frame_ms"] = 1e3 * times.plain();
+    figures[name + "cut_ms"] = 1e3 * times.cut();
   }
 }
 

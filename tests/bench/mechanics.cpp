@@ -29,7 +29,10 @@ Environment held(const Body& body, const Beam& beam) {
 
 Material material(const Beam& beam) {
   Material m;
-  m.young = beam.young, m.poisson = beam.poisson, m.density = beam.density, m.damping = 0;
+  m.young = beam.young;
+  m.poisson = beam.poisson;
+  m.density = beam.density;
+  m.damping = 0;
   return m;
 }
 
@@ -37,17 +40,22 @@ Run bend(const Body& body, Solid& solid, const Beam& beam) {
   const Environment env = held(body, beam);
   State state = at_rest(body.nodes.size());
   Run run;
-  run.bent.nodes = body.nodes.size(), run.points = solid.point_count();
+  run.bent.nodes = body.nodes.size();
+  run.points = solid.point_count();
   const double start = cpu_seconds();
   for (int f = 0; f < beam.frames; ++f) {
     const StepReport r = solid.step_implicit(state, beam.dt, env);
-    run.newton += double(r.newton) / beam.frames, run.cg += double(r.cg) / beam.frames,
-        run.substeps += double(r.substeps) / beam.frames;
+    run.newton += double(r.newton) / beam.frames;
+    run.cg += double(r.cg) / beam.frames;
+    run.substeps += double(r.substeps) / beam.frames;
   }
   run.bent.seconds = cpu_seconds() - start;
   double tips = 0;
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
-    if (body.nodes.position[i].x() > 4 - 1.0 / beam.across) run.bent.tip += state.displacement[i].z(), tips += 1;
+    if (body.nodes.position[i].x() > 4 - 1.0 / beam.across) {
+      run.bent.tip += state.displacement[i].z();
+      tips += 1;
+    }
   run.bent.tip /= tips;
   return run;
 }
@@ -73,12 +81,20 @@ int mechanics(const Options& options) {
     set_threads(0);
     const auto rate = [&](const Bent& b) { return double(b.nodes) * beam.frames / b.seconds; };
     Figures f;
-    f["nodes"] = double(ours.bent.nodes), f["points"] = double(ours.points), f["build_seconds"] = built;
-    f["frame_ms"] = 1e3 * ours.bent.seconds / beam.frames, f["newton"] = ours.newton, f["cg"] = ours.cg,
+    f["nodes"] = double(ours.bent.nodes);
+    f["points"] = double(ours.points);
+    f["build_seconds"] = built;
+    f["frame_ms"] = 1e3 * ours.bent.seconds / beam.frames;
+    f["newton"] = ours.newton;
+    f["cg"] = ours.cg;
     f["substeps"] = ours.substeps;
-    f["node_steps_per_second"] = rate(ours.bent), f["tip"] = ours.bent.tip, f["two_threads"] = speedup;
-    f["bullet_nodes"] = double(theirs.nodes), f["bullet_frame_ms"] = 1e3 * theirs.seconds / beam.frames;
-    f["bullet_node_steps_per_second"] = rate(theirs), f["bullet_tip"] = theirs.tip;
+    f["node_steps_per_second"] = rate(ours.bent);
+    f["tip"] = ours.bent.tip;
+    f["two_threads"] = speedup;
+    f["bullet_nodes"] = double(theirs.nodes);
+    f["bullet_frame_ms"] = 1e3 * theirs.seconds / beam.frames;
+    f["bullet_node_steps_per_second"] = rate(theirs);
+    f["bullet_tip"] = theirs.tip;
     f["ratio"] = rate(ours.bent) / rate(theirs);
     print(f, options.json);
   }

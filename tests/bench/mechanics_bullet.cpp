@@ -54,10 +54,13 @@ Bent bend_with_bullet(const Beam& beam) {
   for (int i = 0; i < int(points.size()); ++i)
     body->setMass(i, points[std::size_t(i)].x() < 0.1 ? btScalar(0) : btScalar(mass[std::size_t(i)]));
   body->initializeDmInverse();
-  body->m_tetraScratches.resize(body->m_tetras.size()), body->m_tetraScratchesTn.resize(body->m_tetras.size());
-  body->m_cfg.drag = 0, body->m_cfg.kDP = 0;
+  body->m_tetraScratches.resize(body->m_tetras.size());
+  body->m_tetraScratchesTn.resize(body->m_tetras.size());
+  body->m_cfg.drag = 0;
+  body->m_cfg.kDP = 0;
   body->setDampingCoefficient(0);
-  body->m_cfg.collisions = 0, body->m_sleepingThreshold = 0;
+  body->m_cfg.collisions = 0;
+  body->m_sleepingThreshold = 0;
   world.addSoftBody(body);
   const double mu = beam.young / (2 * (1 + beam.poisson)),
                lambda = beam.young * beam.poisson / ((1 + beam.poisson) * (1 - 2 * beam.poisson));
@@ -72,8 +75,10 @@ Bent bend_with_bullet(const Beam& beam) {
   bent.seconds = cpu_seconds() - start;
   int tips = 0;
   for (int i = 0; i < body->m_nodes.size(); ++i)
-    if (points[std::size_t(i)].x() > 4 - 0.5 * h)
-      bent.tip += body->m_nodes[i].m_x.z() - points[std::size_t(i)].z(), ++tips;
+    if (points[std::size_t(i)].x() > 4 - 0.5 * h) {
+      bent.tip += body->m_nodes[i].m_x.z() - points[std::size_t(i)].z();
+      ++tips;
+    }
   bent.tip /= tips;
   world.removeSoftBody(body);
   delete body;

@@ -31,8 +31,10 @@ class Interpreter {
     child_ = fork();
     if (child_ < 0) throw std::runtime_error("no process");
     if (child_ == 0) {
-      dup2(ends[1], 0), dup2(ends[1], 1);
-      close(ends[0]), close(ends[1]);
+      dup2(ends[1], 0);
+      dup2(ends[1], 1);
+      close(ends[0]);
+      close(ends[1]);
       setenv("PYTHONPATH", KERF_PYTHON_PATH, 1);
       std::vector<char*> words{const_cast<char*>(KERF_PYTHON_EXECUTABLE)};
       for (const auto& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
@@ -41,11 +43,13 @@ class Interpreter {
       _exit(127);
     }
     close(ends[1]);
-    in_ = fdopen(dup(ends[0]), "w"), out_ = fdopen(ends[0], "r");
+    in_ = fdopen(dup(ends[0]), "w");
+    out_ = fdopen(ends[0], "r");
   }
   ~Interpreter() {
     shutdown(fileno(in_), SHUT_WR);
-    std::fclose(in_), std::fclose(out_);
+    std::fclose(in_);
+    std::fclose(out_);
     waitpid(child_, nullptr, 0);
   }
   Interpreter(const Interpreter&) = delete;
@@ -103,7 +107,10 @@ Result fracture(const Arrays& arrays, double& seconds) {
   const auto chunks = geo::make_chunks(complex, found, model, 0.25 * complex.extent().diagonal());
   seconds = cpu_seconds() - start;
   Result result{0, 0, chunks.size()};
-  for (const auto& chunk : chunks) result.volume += chunk.volume, result.faces += chunk.mesh.triangles.size();
+  for (const auto& chunk : chunks) {
+    result.volume += chunk.volume;
+    result.faces += chunk.mesh.triangles.size();
+  }
   return result;
 }
 
@@ -132,10 +139,12 @@ int python(const Options& options) {
     double seconds = 0;
     const double start = cpu_seconds();
     const Result result = fracture(arrays, seconds);
-    ours = std::min(ours, cpu_seconds() - start), ours_fracture = std::min(ours_fracture, seconds);
+    ours = std::min(ours, cpu_seconds() - start);
+    ours_fracture = std::min(ours_fracture, seconds);
     peer.tell("run");
     const auto told = peer.numbers(5);  // seconds of all, of fracture; volume, faces, pieces
-    theirs = std::min(theirs, told[0]), theirs_fracture = std::min(theirs_fracture, told[1]);
+    theirs = std::min(theirs, told[0]);
+    theirs_fracture = std::min(theirs_fracture, told[1]);
     if (told[2] != result.volume || told[3] != double(result.faces) || told[4] != double(result.pieces))
       throw std::runtime_error("kerf-bench: Python and C++ made other pieces");
   }

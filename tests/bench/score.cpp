@@ -56,7 +56,9 @@ Row measure(const geo::TriangleMesh& model, int pieces) {
       for (std::size_t p = begin; p < end; ++p) geo::convex_decomposition(chunks[p].mesh, 1, hull_corners);
     });
     lower(row.hulls);
-    row.count = found.count, row.walls = score.sheet.triangles.size(), row.attempts = score.attempts;
+    row.count = found.count;
+    row.walls = score.sheet.triangles.size();
+    row.attempts = score.attempts;
   }
   return row;
 }

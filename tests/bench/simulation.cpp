@@ -69,7 +69,9 @@ int simulation(const Options& options) {
     if (nodes == 1000000) figures["nodes_1m_seconds_per_frame"] = seconds / frames;
     if (nodes < 8000) continue;
     if (first_nodes == 0) {
-      first_nodes = double(nodes), first_mechanics = total.mechanics_seconds, first_contact = total.contact_seconds;
+      first_nodes = double(nodes);
+      first_mechanics = total.mechanics_seconds;
+      first_contact = total.contact_seconds;
       first_processor = processor;
       continue;
     }

@@ -21,7 +21,8 @@ TEST_CASE("regions know which elements are connected, and visit little where the
     std::iota(label.begin(), label.end(), 0u);
     for (std::uint32_t e = 0; e < edges; ++e) {
       const auto a = random.below(n), b = random.below(n);
-      around[a].push_back(b), around[b].push_back(a);
+      around[a].push_back(b);
+      around[b].push_back(a);
       const auto from = std::max(label[a], label[b]), to = std::min(label[a], label[b]);
       std::replace(label.begin(), label.end(), from, to);
     }
@@ -54,10 +55,12 @@ TEST_CASE("a query about two adjacent seeds does not visit the rest of a long ch
     if (i > 0) out.push_back(i - 1);
     if (i < 100000) out.push_back(i + 1);
   });
-  regions.seed(500), regions.seed(501);
+  regions.seed(500);
+  regions.seed(501);
   REQUIRE(regions.joined(500, 501));
   REQUIRE(visited <= 4);
-  regions.seed(3), regions.seed(100000);
+  regions.seed(3);
+  regions.seed(100000);
   REQUIRE(regions.joined(3, 500));
   REQUIRE(visited <= 1100);
 }

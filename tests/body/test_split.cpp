@@ -116,7 +116,8 @@ TEST_CASE("A thin ligament that a cut leaves gets few nodes, all of them near it
     split(body, front, edge(1 - left), {}, &stats);
     CHECK(check_body(body).first_problem == "");
     CHECK(find_pieces(body.surface).count == 1);
-    repaired += stats.repair_nodes > 0, by_path += stats.repair_nodes > 0 && stats.repair_nodes <= 3;
+    repaired += stats.repair_nodes > 0;
+    by_path += stats.repair_nodes > 0 && stats.repair_nodes <= 3;
     CHECK(std::accumulate(body.nodes.volume.begin(), body.nodes.volume.end(), 0.0) == Approx(volume));
     CHECK(body.cache->grid.size() == body.nodes.size());
     // Ends of cut edges are within a support radius of the cut, and walls 1.5 spacings farther.
@@ -247,7 +248,9 @@ TEST_CASE("Nodes whose neighbours do not span space are debris", "[body]") {
     for (int i = 0; i < 25; ++i) {
       const bool lifted = i % 5 == 2 && i / 5 == 2;
       body.nodes.position.push_back({0.1 * (i % 5), 0.1 * (i / 5), lifted ? 0.1 * lift : 0.0});
-      body.nodes.radius.push_back(0.25), body.nodes.spacing.push_back(0.1), body.nodes.volume.push_back(1e-3);
+      body.nodes.radius.push_back(0.25);
+      body.nodes.spacing.push_back(0.1);
+      body.nodes.volume.push_back(1e-3);
     }
     body.debris.assign(25, 2);
     const TriangleBvh nothing;
@@ -263,7 +266,8 @@ TEST_CASE("Nodes whose neighbours do not span space are debris", "[body]") {
 TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
   const TriangleMesh mesh = make_block({1, 1, 1}, 0.1);
   SampleOptions sampling;
-  sampling.spacing = 0.03, sampling.levels = 4;
+  sampling.spacing = 0.03;
+  sampling.levels = 4;
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   const NodeSet before = body.nodes;
   CHECK(body.finest_spacing == *std::min_element(before.spacing.begin(), before.spacing.end()));
@@ -283,8 +287,10 @@ TEST_CASE("New nodes at a crack grade smoothly from fine to coarse", "[body]") {
     // than the farthest.
     double least = coarsest, most = 0;
     for (std::size_t j = 0; j < before.size(); ++j)
-      if ((before.position[j] - x).norm() < 2 * coarsest)
-        least = std::min(least, before.spacing[j]), most = std::max(most, before.spacing[j]);
+      if ((before.position[j] - x).norm() < 2 * coarsest) {
+        least = std::min(least, before.spacing[j]);
+        most = std::max(most, before.spacing[j]);
+      }
     CHECK(spacing >= std::max(body.finest_spacing, 0.5 * least));
     CHECK(spacing <= most);
     if (std::min({x.y(), 1 - x.y(), x.z(), 1 - x.z()}) > 0.35) {
@@ -311,7 +317,8 @@ TEST_CASE("Segments in a box are blocked by the faces read for the box as by the
                       : Vec3(0.25 * Vec3(random.below(9), random.below(5), random.below(5)));
     };
     Box3 box;
-    box.add(any()), box.add(any());
+    box.add(any());
+    box.add(any());
     const BoxVisibility sight(complex, box);
     for (int k = 0; k < 50; ++k) {
       const Vec3 p = any().cwiseMax(box.lo).cwiseMin(box.hi), q = any().cwiseMax(box.lo).cwiseMin(box.hi);

@@ -16,13 +16,15 @@ namespace {
 
 Body make_body(const TriangleMesh& mesh, double spacing, std::uint64_t seed) {
   SampleOptions sampling;
-  sampling.spacing = spacing, sampling.seed = seed;
+  sampling.spacing = spacing;
+  sampling.seed = seed;
   return build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling), {26, NeighborMethod::automatic});
 }
 
 Material soft() {
   Material material;
-  material.young = 1e4, material.damping = 0;
+  material.young = 1e4;
+  material.damping = 0;
   return material;
 }
 

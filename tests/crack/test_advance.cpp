@@ -180,8 +180,10 @@ void require_same(const Complex& a, const Complex& b) {
       rings = rings && std::ranges::equal(a.faces_around(v[k], v[(k + 1) % 3]), b.faces_around(v[k], v[(k + 1) % 3]));
       fans = fans && std::ranges::equal(a.faces_at(v[k]), b.faces_at(v[k]));
     }
-    near_a.clear(), near_b.clear();
-    a.faces_near(a.box(FaceId(f)), near_a), b.faces_near(b.box(FaceId(f)), near_b);
+    near_a.clear();
+    near_b.clear();
+    a.faces_near(a.box(FaceId(f)), near_a);
+    b.faces_near(b.box(FaceId(f)), near_b);
     near = near && near_a == near_b;
   }
   for (std::uint32_t v = 0; v < a.surface_vertex_count(); ++v)

@@ -33,8 +33,12 @@ struct Bar {
       for (const auto& p : outline) mesh.vertices.push_back(at(p[0], 2 * end, p[1]));
     for (std::uint32_t i = 0; i < 5; ++i) {
       const std::uint32_t j = (i + 1) % 5;
-      mesh.triangles.push_back({i, j + 5, j}), mesh.triangles.push_back({i, i + 5, j + 5});
-      if (i != 3 && j != 3) mesh.triangles.push_back({3, i, j}), mesh.triangles.push_back({8, j + 5, i + 5});
+      mesh.triangles.push_back({i, j + 5, j});
+      mesh.triangles.push_back({i, i + 5, j + 5});
+      if (i != 3 && j != 3) {
+        mesh.triangles.push_back({3, i, j});
+        mesh.triangles.push_back({8, j + 5, i + 5});
+      }
     }
     if (signed_volume(mesh) < 0)
       for (auto& t : mesh.triangles) std::swap(t[0], t[1]);

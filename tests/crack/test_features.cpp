@@ -174,7 +174,8 @@ TEST_CASE("contacts of a front are known, and one between two others may be omit
           for (const auto& p : s)
             if (p.id != b) expected.back().push_back(p.id);
         }
-        contacts.omit(b), ++omitted;
+        contacts.omit(b);
+        ++omitted;
         CHECK_FALSE(contacts.contains(b));
         std::vector<std::vector<VertexId>> left;
         for (const auto& s : model.front.segments) {

@@ -32,7 +32,8 @@ TEST_CASE("random fronts on an integer grid keep every invariant after every ste
                    });
     const std::uint64_t seed = which.first + static_cast<std::uint64_t>(c);
     const GridOutcome& result = outcomes[static_cast<std::size_t>(c % batch)];
-    steps += result.steps, refused += result.refused;
+    steps += result.steps;
+    refused += result.refused;
     for (const auto& [reason, times] : result.reasons) reasons[reason] += times;
     if (result.violation.empty()) continue;
     const std::string kind = kind_of(result.violation), file = "grid-" + std::to_string(seed) + ".front";

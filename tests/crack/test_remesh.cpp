@@ -216,7 +216,8 @@ TEST_CASE("decimation stays as close as it is told, closed and free of crossings
     }
     CHECK(most <= deviation * diagonal);
     const auto few = static_cast<std::size_t>(0.8 * k.live_face_count());
-    options.faces = few, options.deviation = 0.05;
+    options.faces = few;
+    options.deviation = 0.05;
     decimate(k, {}, options);
     CHECK(k.live_face_count() <= few + 1);
     CHECK(check_complex(k, true).first_problem == "");

@@ -104,7 +104,8 @@ TEST_CASE("a sound solid keeps its vertices, cavities stay, and walls inside go"
   TriangleMesh walled = make_block({2, 1, 1}, 1);
   const auto first = static_cast<std::uint32_t>(walled.vertices.size());
   for (const auto& p : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 0, 1)}) walled.vertices.push_back(p);
-  walled.triangles.push_back({first, first + 1, first + 2}), walled.triangles.push_back({first, first + 2, first + 3});
+  walled.triangles.push_back({first, first + 1, first + 2});
+  walled.triangles.push_back({first, first + 2, first + 3});
   CHECK(signed_volume(united(walled)) == Approx(2));
 }
 

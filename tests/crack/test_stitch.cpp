@@ -47,7 +47,8 @@ struct Stitched {
     find_near(strip, k, 1e-9);
     crack::Arrangement arrangement(k, strip);
     CrackStats stats;
-    arrangement.meet(stats), arrangement.split();
+    arrangement.meet(stats);
+    arrangement.split();
     const crack::EdgeTable edges = crack::edges_of_complex(arrangement);
     const auto inside = crack::children_in_material(arrangement, k, edges);
     std::vector<VertexId> vertex;
@@ -151,7 +152,8 @@ TEST_CASE("stitching gives the radial order of every edge of a crack face or of 
       ++given[edge];
       auto listed = order.faces, found = faces.at(edge);
       (listed.size() == 3 ? three : more) += 1;
-      std::sort(listed.begin(), listed.end()), std::sort(found.begin(), found.end());
+      std::sort(listed.begin(), listed.end());
+      std::sort(found.begin(), found.end());
       CHECK(listed == found);
       std::vector<Vec3> apex;
       for (const FaceId f : order.faces)

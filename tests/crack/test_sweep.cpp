@@ -153,7 +153,8 @@ TEST_CASE("consecutive strips are oriented alike: the front between them is no b
     Chain border, expected;
     border.add_border(sweep(first_step.front, first_step.next));
     border.add_border(sweep(second.front, second.next));
-    first_step.add_border(expected), second.add_border(expected);
+    first_step.add_border(expected);
+    second.add_border(expected);
     CHECK(border == expected);
     // The edges of the front between them cancel, except where the first step stood still.
     for (std::size_t i = 0; i < second.front.segments.size(); ++i) {
@@ -228,7 +229,10 @@ TEST_CASE("after snapping, a vertex within reach is a point of the strip, which 
       for (std::size_t i = 0; i < 3; ++i) ++uses[std::minmax(t.p[i], t.p[(i + 1) % 3])];
     std::size_t border = 0, points_used = 0;
     std::vector<bool> used(strip.points.size());
-    for (const auto& [edge, times] : uses) border += times == 1, used[edge.first] = used[edge.second] = true;
+    for (const auto& [edge, times] : uses) {
+      border += times == 1;
+      used[edge.first] = used[edge.second] = true;
+    }
     points_used = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
     CHECK(points_used + strip.triangles.size() == uses.size() + 1);  // a disk: V − E + F = 1
     CHECK(border == 2 * points_used - 2 - strip.triangles.size());

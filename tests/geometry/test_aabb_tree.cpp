@@ -48,7 +48,8 @@ TEST_CASE("the pairs of a tree are those of a double loop") {
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
       if (boxes[i].empty() || random.below(10) != 0) continue;
       const Vec3 p(random.uniform(-3, 3), random.uniform(-1, 1), random.uniform(-1, 1));
-      tree.enlarge(i, {p, p}), boxes[i].add(p);
+      tree.enlarge(i, {p, p});
+      boxes[i].add(p);
     }
     const auto all = tree.pairs(), with_some = tree.pairs(&some);
     CHECK(sorted(all) == expected(false));
@@ -68,7 +69,10 @@ TEST_CASE("the pairs of a tree are those of a double loop") {
         random.below(3) == 0 ? Vec3(std::pow(10.0, random.uniform(0, 9)) * random.direction()) : Vec3(Vec3::Zero());
     for (Box3& b : others) {
       const Vec3 by = all_by + random.uniform(0, random.below(10) == 0 ? 4 : 0.1) * random.direction();
-      if (!b.empty()) b.lo += by, b.hi += by;
+      if (!b.empty()) {
+        b.lo += by;
+        b.hi += by;
+      }
     }
     boxes = others;
     REQUIRE(tree.refit(others));
@@ -76,7 +80,8 @@ TEST_CASE("the pairs of a tree are those of a double loop") {
     CHECK(sorted(tree.pairs(&some)) == expected(true));
     const auto empty = std::find_if(boxes.begin(), boxes.end(), [](const Box3& b) { return b.empty(); });
     if (empty == boxes.end()) continue;
-    others = boxes, others[static_cast<std::size_t>(empty - boxes.begin())].add(Vec3::Zero());
+    others = boxes;
+    others[static_cast<std::size_t>(empty - boxes.begin())].add(Vec3::Zero());
     CHECK(!tree.refit(others));
     CHECK(sorted(tree.pairs()) == expected(false));
   }
@@ -120,7 +125,8 @@ TEST_CASE("pairs have the same order for any number of threads, also after a ref
     auto given = then;
     REQUIRE(tree.refit(given));
     CHECK(same(tree.boxes(), then));
-    found.push_back(tree.pairs()), found.push_back(tree.pairs(&some));
+    found.push_back(tree.pairs());
+    found.push_back(tree.pairs(&some));
     return found;
   };
   set_threads(1);
@@ -133,7 +139,8 @@ TEST_CASE("pairs have the same order for any number of threads, also after a ref
   const AabbTree anew(then);
   for (const bool asked : {false, true}) {
     auto replaced = alone[asked ? 3 : 2], expected = anew.pairs(asked ? &some : nullptr);
-    std::sort(replaced.begin(), replaced.end()), std::sort(expected.begin(), expected.end());
+    std::sort(replaced.begin(), replaced.end());
+    std::sort(expected.begin(), expected.end());
     CHECK(replaced == expected);
   }
 }

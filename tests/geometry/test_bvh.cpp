@@ -83,7 +83,10 @@ TEST_CASE("closest triangles and triangles near a box are those of a scan", "[bv
       for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         const auto& [a, b, c] = triangles[t];
         const double d = (closest_point_on_triangle(p, a, b, c) - p).squaredNorm();
-        if (d < distance) distance = d, nearest = t;
+        if (d < distance) {
+          distance = d;
+          nearest = t;
+        }
       }
       const auto found = tree.closest(p);
       REQUIRE(found.triangle == nearest);

@@ -19,7 +19,10 @@ void check_hull(const std::vector<Vec3>& points, const std::vector<Triangle>& hu
   for (const auto& t : hull)
     for (std::size_t k = 0; k < 3; ++k) {
       ++edges[{t[k], t[(k + 1) % 3]}];
-      if (!used[t[k]]) used[t[k]] = 1, ++corners;
+      if (!used[t[k]]) {
+        used[t[k]] = 1;
+        ++corners;
+      }
     }
   for (const auto& [edge, times] : edges) {
     REQUIRE(times == 1);

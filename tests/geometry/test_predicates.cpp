@@ -17,9 +17,11 @@ using Rational = CGAL::Exact_rational;
 
 int oracle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   Rational m[3][3];
-  for (int i = 0; i < 3; ++i)
-    m[0][i] = Rational(b[i]) - Rational(a[i]), m[1][i] = Rational(c[i]) - Rational(a[i]),
+  for (int i = 0; i < 3; ++i) {
+    m[0][i] = Rational(b[i]) - Rational(a[i]);
+    m[1][i] = Rational(c[i]) - Rational(a[i]);
     m[2][i] = Rational(d[i]) - Rational(a[i]);
+  }
   const Rational det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
                        m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
                        m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
@@ -66,7 +68,9 @@ TEST_CASE("filtered orientations of many points are exact or undecided") {
     for (std::size_t k = 0; k < 128; ++k) {
       const Vec3 p =
           random.below(3) ? point() : Vec3(t[0] + random.uniform() * (t[1] - t[0]) + random.uniform() * (t[2] - t[0]));
-      x[k] = p.x(), y[k] = p.y(), z[k] = p.z();
+      x[k] = p.x();
+      y[k] = p.y();
+      z[k] = p.z();
     }
     const double* const at[3] = {x.data(), y.data(), z.data()};
     std::uint64_t above[2], below[2];
@@ -76,7 +80,9 @@ TEST_CASE("filtered orientations of many points are exact or undecided") {
                 under = below[k / 64] >> k % 64 & 1;
       CAPTURE(i, k);
       CHECK((over + under == 0 || over - under == side));
-      ++queried, decided += static_cast<std::size_t>(over + under), coplanar += side == 0;
+      ++queried;
+      decided += static_cast<std::size_t>(over + under);
+      coplanar += side == 0;
     }
   }
   CHECK(decided > queried / 3);
@@ -128,12 +134,19 @@ TEST_CASE("the triangle index finds what a scan finds, whatever the sizes") {
   std::vector<Box3> boxes;
   const auto box = [&](double size) {
     Box3 b;
-    b.add(4 * random.direction()), b.add(b.lo + size * random.uniform() * random.direction());
+    b.add(4 * random.direction());
+    b.add(b.lo + size * random.uniform() * random.direction());
     return b;
   };
   const double sizes[] = {1, 1, 0.01, 1e-9, 0, 30};
-  for (std::uint32_t i = 0; i < 300; ++i) boxes.push_back(box(sizes[i % 6])), index.insert(i, boxes[i]);
-  for (std::uint32_t i = 0; i < 300; i += 4) index.erase(i), boxes[i] = Box3{};
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    boxes.push_back(box(sizes[i % 6]));
+    index.insert(i, boxes[i]);
+  }
+  for (std::uint32_t i = 0; i < 300; i += 4) {
+    index.erase(i);
+    boxes[i] = Box3{};
+  }
   for (int q = 0; q < 200; ++q) {
     const Box3 query = box(sizes[q % 6]);
     std::vector<std::uint32_t> found, expected;

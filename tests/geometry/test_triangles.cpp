@@ -137,9 +137,10 @@ TEST_CASE("the index is right while boxes of all sizes are inserted and erased")
   for (int step = 0; step < cases(3000); ++step) {
     const auto id = static_cast<std::uint32_t>(random.below(boxes.size()));
     const bool empties = step % 1000 > 800;
-    if (!boxes[id].empty())
-      index.erase(id), boxes[id] = Box3{};
-    else if (!empties)
+    if (!boxes[id].empty()) {
+      index.erase(id);
+      boxes[id] = Box3{};
+    } else if (!empties)
       index.insert(id, boxes[id] = box(step));
     REQUIRE(index.contains(id) == !boxes[id].empty());
     if (step % 5) continue;

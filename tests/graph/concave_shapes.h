@@ -40,7 +40,8 @@ inline geo::TriangleMesh walls_of(const Prism& prism) {
     for (const auto& p : prism.polygon) mesh.vertices.push_back({p[0], p[1], z});
   for (std::uint32_t k = 0; k < n; ++k) {
     const auto next = (k + 1) % n;
-    mesh.triangles.push_back({k, next, n + next}), mesh.triangles.push_back({k, n + next, n + k});
+    mesh.triangles.push_back({k, next, n + next});
+    mesh.triangles.push_back({k, n + next, n + k});
   }
   return mesh;
 }
@@ -116,8 +117,11 @@ struct ConcaveErrors {
   double mean() const { return count == 0 ? 0 : sum / double(count); }
   void add(double distance, double exact, double radius) {
     const double error = distance / exact - 1;
-    ++count, missed += distance >= radius;
-    sum += error, worst = std::max(worst, error), least = std::min(least, error);
+    ++count;
+    missed += distance >= radius;
+    sum += error;
+    worst = std::max(worst, error);
+    least = std::min(least, error);
   }
 };
 
@@ -135,7 +139,8 @@ inline geo::NodeSet nodes_in(const Prism& prism, int across, std::uint64_t seed)
         for (int d = 0; d < 3; ++d) p[d] = h * (p[d] + random.uniform(-0.15, 0.15));
         if (paths.inside({p.x(), p.y()}, h / 6)) nodes.position.push_back(p);
       }
-  nodes.spacing.assign(nodes.position.size(), h), nodes.radius.assign(nodes.position.size(), 2.4 * h);
+  nodes.spacing.assign(nodes.position.size(), h);
+  nodes.radius.assign(nodes.position.size(), 2.4 * h);
   nodes.volume.assign(nodes.position.size(), h * h * h);
   return nodes;
 }

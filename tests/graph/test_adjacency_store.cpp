@@ -71,7 +71,8 @@ TEST_CASE("a row that is too long is refused") {
   AdjacencyStore store;
   store.resize(1);
   Row row;
-  row.to.resize(AdjacencyStore::max_entries + 1), row.bits.resize(row.to.size());
+  row.to.resize(AdjacencyStore::max_entries + 1);
+  row.bits.resize(row.to.size());
   CHECK_THROWS_AS(store.set(0, row.view()), InputError);
 }
 
@@ -153,6 +154,7 @@ TEST_CASE("rows survive a trip through flat arrays, and damaged arrays are refus
         flat.paths.pop_back();
     }
     REQUIRE_THROWS_AS(read(), InputError);
-    flat = kept, counts = kept_counts;
+    flat = kept;
+    counts = kept_counts;
   }
 }

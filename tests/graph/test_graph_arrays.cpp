@@ -27,7 +27,9 @@ NodeSet line_of_nodes() {
   NodeSet nodes;
   for (int i = 0; i < 4; ++i) {
     nodes.position.push_back(Vec3(i, 0, 0));
-    nodes.radius.push_back(1.5), nodes.spacing.push_back(1), nodes.volume.push_back(1);
+    nodes.radius.push_back(1.5);
+    nodes.spacing.push_back(1);
+    nodes.volume.push_back(1);
   }
   return nodes;
 }
@@ -156,7 +158,9 @@ TEST_CASE("blocks of rows are released once all runs that may read them are done
   NodeSet nodes;
   for (std::uint32_t i = 0; i < n; ++i) {
     nodes.position.push_back(Vec3(i, 0, 0));
-    nodes.radius.push_back(1.5), nodes.spacing.push_back(1), nodes.volume.push_back(1);
+    nodes.radius.push_back(1.5);
+    nodes.spacing.push_back(1);
+    nodes.volume.push_back(1);
   }
   VisibilityGraph graph = build_visibility_graph(nodes, TriangleBvh(), 2);
   GraphStorage& storage = graph.storage();
@@ -166,7 +170,8 @@ TEST_CASE("blocks of rows are released once all runs that may read them are done
   std::size_t done = 0;
   for (std::size_t c = 0; c < n / run; ++c) {
     if (c + 1 < n / run) REQUIRE(!storage.entries(n - 1).to.empty());  // nothing that is still needed has gone
-    release.done(c), ++done;
+    release.done(c);
+    ++done;
   }
   REQUIRE(done == 40);
   // All blocks have gone over: the store that is filled takes them before it allocates.

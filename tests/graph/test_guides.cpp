@@ -145,7 +145,8 @@ TEST_CASE("with guides, distances of nodes that do not see each other are near t
               to.add(n.distance, exact, nodes.radius[i]);
           }
         };
-        add(bare, errors), add(with, errors_with);
+        add(bare, errors);
+        add(with, errors_with);
       }
       CAPTURE(errors.count, errors_with.count, errors.mean(), errors_with.mean(), errors.worst, errors_with.worst,
               errors.missed, errors_with.missed);

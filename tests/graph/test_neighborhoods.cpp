@@ -75,11 +75,13 @@ TEST_CASE("every vector width and number of threads gives the same rows") {
     for (int n = 0; n < 40; ++n) {
       std::vector<double> squared, radius;
       std::vector<std::uint32_t> lengths(static_cast<std::size_t>(n) + 8);
-      for (int k = 0; k < n; ++k)
-        squared.push_back(k % 7 == 0 ? 0 : std::exp(random.uniform(-40, 40))),
-            radius.push_back(std::exp(random.uniform(-3, 3)));
+      for (int k = 0; k < n; ++k) {
+        squared.push_back(k % 7 == 0 ? 0 : std::exp(random.uniform(-40, 40)));
+        radius.push_back(std::exp(random.uniform(-3, 3)));
+      }
       auto padded_squared = squared, padded_radius = radius;
-      padded_squared.resize(lengths.size(), 1), padded_radius.resize(lengths.size(), 1);
+      padded_squared.resize(lengths.size(), 1);
+      padded_radius.resize(lengths.size(), 1);
       warped_lengths(padded_squared.data(), padded_radius.data(), squared.size(), lengths.data());
       for (std::size_t k = 0; k < squared.size(); ++k)
         REQUIRE(lengths[k] == warped_length(Vec3(std::sqrt(squared[k]), 0, 0), Vec3(0, 0, 0), radius[k], 0));
@@ -116,7 +118,9 @@ TEST_CASE("nodes at one place, in one line and alone have rows") {
   NodeSet nodes;
   for (int i = 0; i < 60; ++i)
     nodes.position.push_back(i < 20 ? Vec3(0.5, 0.5, 0.5) : i < 59 ? Vec3(0.01 * i, 0, 0) : Vec3(90, 0, 0));
-  nodes.radius.assign(60, 0.2), nodes.spacing.assign(60, 0.1), nodes.volume.assign(60, 1e-3);
+  nodes.radius.assign(60, 0.2);
+  nodes.spacing.assign(60, 0.1);
+  nodes.volume.assign(60, 1e-3);
   const auto graph = build_visibility_graph(nodes, TriangleBvh(), 5);
   const auto rows = with_rows(nodes, graph, TriangleBvh());
   CHECK(rows == with_rows(nodes, graph, TriangleBvh(), NeighborMethod::dijkstra));

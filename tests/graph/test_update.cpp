@@ -30,8 +30,10 @@ struct Cut {
     build_neighborhoods(nodes, graph, tree);
   }
   NodeId insert(const Vec3& p, double radius) {
-    nodes.position.push_back(p), nodes.radius.push_back(radius), nodes.spacing.push_back(0.1),
-        nodes.volume.push_back(1e-4);
+    nodes.position.push_back(p);
+    nodes.radius.push_back(radius);
+    nodes.spacing.push_back(0.1);
+    nodes.volume.push_back(1e-4);
     grid.insert(nodes.position, static_cast<std::uint32_t>(nodes.size() - 1));
     return NodeId(nodes.size() - 1);
   }
@@ -176,7 +178,8 @@ TEST_CASE("updates are the same for any number of threads") {
       Soup fresh;
       for (int j = 0; j < 6; ++j) {
         const double u0 = 0.45 * step - 0.1, u1 = u0 + 0.45, v0 = j / 5.0 - 0.1, v1 = v0 + 0.2;
-        fresh.push_back({at(u0, v0), at(u1, v0), at(u1, v1)}), fresh.push_back({at(u0, v0), at(u1, v1), at(u0, v1)});
+        fresh.push_back({at(u0, v0), at(u1, v0), at(u1, v1)});
+        fresh.push_back({at(u0, v0), at(u1, v1), at(u0, v1)});
       }
       updated.push_back(cut.step(NodeId(cut.nodes.size()), {}, fresh).updated_nodes);
       graphs.push_back(cut.graph);
@@ -247,7 +250,8 @@ TEST_CASE("updates with any faces, and nodes inserted, moved, resized and joined
       const auto update = cut.step(first, moved, fresh, joins, guides, resized);
       require_as_from_scratch(cut, update, before, rows_compared);
       resized_nodes += resized.size();
-      cut_edges += update.cut_edges.size(), added_edges += update.added_edges.size();
+      cut_edges += update.cut_edges.size();
+      added_edges += update.added_edges.size();
     }
   }
   CHECK(rows_compared > 15000);

@@ -56,12 +56,15 @@ TEST_CASE("What was seen and is still is told from rows of any kind, whatever th
       const auto news = now;
       now = {};
       for (const auto i : old.to)
-        if (random.uniform() < stays)
-          now.to.push_back(i), now.bits.push_back(random.below(2) ? AdjacencyRow::edge_bit : 0);
+        if (random.uniform() < stays) {
+          now.to.push_back(i);
+          now.bits.push_back(random.below(2) ? AdjacencyRow::edge_bit : 0);
+        }
       for (const auto i : news.to)
         if (random.below(20) == 0 && !std::binary_search(now.to.begin(), now.to.end(), i)) {
           const auto at = std::lower_bound(now.to.begin(), now.to.end(), i) - now.to.begin();
-          now.to.insert(now.to.begin() + at, i), now.bits.insert(now.bits.begin() + at, 0);
+          now.to.insert(now.to.begin() + at, i);
+          now.bits.insert(now.bits.begin() + at, 0);
         }
     }
     std::vector<std::uint32_t> lost;

@@ -49,8 +49,9 @@ inline Body make_block_body(const BodyCase& c, const BodyOptions& options) {
     for (int y = 1; y <= along; ++y)
       for (int x = 1; x <= along; ++x) {
         nodes.position.push_back(h * Vec3(x, y, z));
-        nodes.spacing.push_back(h), nodes.radius.push_back(2 * h),
-            nodes.volume.push_back(std::pow(GridCase::size / along, 3));
+        nodes.spacing.push_back(h);
+        nodes.radius.push_back(2 * h);
+        nodes.volume.push_back(std::pow(GridCase::size / along, 3));
       }
   return build_body(Complex::from_skin(make_block(Vec3::Constant(GridCase::size), GridCase::size / c.faces)), nodes,
                     options);
@@ -64,7 +65,8 @@ inline const TriangleMesh& coarse_model(const std::string& name, int faces) {
   Complex k = Complex::from_skin(invariants::model(name));
   decimate(k, {}, {.deviation = 0.02, .faces = static_cast<std::size_t>(faces)});
   at->second = k.two_sided();
-  at->second.site.clear(), at->second.source.clear();
+  at->second.site.clear();
+  at->second.source.clear();
   require_solid(at->second);
   return at->second;
 }
@@ -75,7 +77,8 @@ inline Body make_body(const BodyCase& c) {
   if (c.model == "block") return make_block_body(c, options);
   const TriangleMesh& coarse = coarse_model(c.model, c.faces);
   SampleOptions sampling;
-  sampling.count = static_cast<std::size_t>(c.nodes), sampling.jitter = c.jitter;
+  sampling.count = static_cast<std::size_t>(c.nodes);
+  sampling.jitter = c.jitter;
   NodeSet nodes = sample_nodes(coarse, sampling);
   return build_body(Complex::from_skin(coarse), std::move(nodes), options);
 }

@@ -140,7 +140,9 @@ inline std::string fault_of(const Body& body, double volume) {
   }
   if (binding.closest != body.binding.closest) return "a node's closest vertex is not that of scratch";
   Body marked;
-  marked.nodes = body.nodes, marked.graph = body.graph, marked.debris.resize(x.size());
+  marked.nodes = body.nodes;
+  marked.graph = body.graph;
+  marked.debris.resize(x.size());
   std::vector<NodeId> all;
   for (std::uint32_t i = 0; i < x.size(); ++i) all.push_back(NodeId(i));
   mark_debris(marked, all);
@@ -148,7 +150,8 @@ inline std::string fault_of(const Body& body, double volume) {
 
   // The cache for the next step.
   Body again;
-  again.surface = k, again.binding = body.binding;
+  again.surface = k;
+  again.binding = body.binding;
   prepare_cache(again);
   const IncrementalCache &kept = *body.cache, &fresh = *again.cache;
   if (kept.depth.empty()) return {};  // nothing was split yet

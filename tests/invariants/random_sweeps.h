@@ -17,7 +17,10 @@ inline Vec3 snapped(const Complex& k, const Vec3& p, Random& random) {
   double least = 1e300;
   const auto kind = random.below(3);
   const auto offer = [&](const Vec3& q) {
-    if ((q - p).norm() < least) least = (q - p).norm(), best = q;
+    if ((q - p).norm() < least) {
+      least = (q - p).norm();
+      best = q;
+    }
   };
   for (const FaceId f : near) {
     const auto t = k.corners(f);

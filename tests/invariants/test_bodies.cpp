@@ -100,8 +100,13 @@ class Campaign {
     INFO("KERF_CASE=" << seed << ", " << c.recipe());
     if (made_.insert(c.recipe()).second) require_good_model(c);
     const Outcome two = cut(c, true);
-    ++cases_, steps_ += two.steps, cutting_ += two.cutting, refused_ += two.refused, parted_ += two.parted,
-        guided_ += c.guides > 0, resized_ += two.resized;
+    ++cases_;
+    steps_ += two.steps;
+    cutting_ += two.cutting;
+    refused_ += two.refused;
+    parted_ += two.parted;
+    guided_ += c.guides > 0;
+    resized_ += two.resized;
     if (!two.fault.empty()) keep(c, seed, two);
     if (two.fault.empty()) vary([&] { CHECK(same(two.body, cut(c, false).body)); });
     set_threads(0);
@@ -239,7 +244,10 @@ TEST_CASE("Cut bodies are as from scratch after every step: real models", "[bodi
       const std::uint64_t seed = which.first + static_cast<std::uint64_t>(i);
       if (seed % model_names.size() != m) continue;
       BodyCase c{.model = model_names[m], .guides = guides_for(seed), .resize = resize_for(seed), .cracks = {}};
-      if (seed / model_names.size() % 4 != 0) c.faces = 800, c.nodes = 500;
+      if (seed / model_names.size() % 4 != 0) {
+        c.faces = 800;
+        c.nodes = 500;
+      }
       Random random(seed * 104729);
       c.cracks = random_cracks(body_cases::body_of(c).surface, random);
       campaign.run(c, seed);

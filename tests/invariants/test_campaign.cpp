@@ -73,8 +73,10 @@ TEST_CASE("Every kind of front through every model keeps every invariant after e
           // The same sheet again, or a new one.
           if (sweeps.empty() || random.below(4))
             sweeps.push_back(random_sweeps::make_sweep(k, random));
-          else
-            sweeps.push_back(sweeps.back()), sweeps.back().kind = "again " + sweeps.back().kind;
+          else {
+            sweeps.push_back(sweeps.back());
+            sweeps.back().kind = "again " + sweeps.back().kind;
+          }
           const auto& sweep = sweeps.back();
           INFO(model.name << ", seed " << seed << ", crack " << crack << ", " << sweep.kind);
           FrontState front = begin_front(sweep.rows[0], sweep.closed, crack);
@@ -98,7 +100,8 @@ TEST_CASE("Every kind of front through every model keeps every invariant after e
               if (k.live_face_count() != before) FAIL("a refused step changed the complex");
               break;
             }
-            repairs += work.repairs, retries += work.attempts - 1;
+            repairs += work.repairs;
+            retries += work.attempts - 1;
           }
           const auto report = check_complex(k, false);
           if (!report.good()) FAIL(report.first_problem);

@@ -139,7 +139,8 @@ inline void campaign(const std::string& family, int base, const Read& read, cons
     current.bytes = damage(random);
     guard_time();
     const Outcome o = outcome_of(current.bytes, "damaged." + family, read);
-    read_count += o.read, used_count += o.used;
+    read_count += o.read;
+    used_count += o.used;
     if (!o.fault.empty())
       FAIL_CHECK(family << ", seed " << current.seed << ": " << o.fault << "; the bytes are in " << current.save());
   }

@@ -35,8 +35,11 @@ inline std::string with_table(const std::string& bytes, const std::string& table
   last.head.table_length = table.size();
   last.head.hash = last.head.own_hash();
   geo::kerf::Commit commit;
-  commit.number = last.head.number, commit.table = last.head.table, commit.table_length = table.size();
-  commit.table_hash = geo::kerf::hash_of(table.data(), table.size()), commit.head_hash = last.head.hash;
+  commit.number = last.head.number;
+  commit.table = last.head.table;
+  commit.table_length = table.size();
+  commit.table_hash = geo::kerf::hash_of(table.data(), table.size());
+  commit.head_hash = last.head.hash;
   commit.hash = commit.own_hash();
   std::string out = bytes.substr(0, last.head.table) + table;
   out.replace(last.start, sizeof last.head, reinterpret_cast<const char*>(&last.head), sizeof last.head);
@@ -89,12 +92,16 @@ inline std::string resealed(std::string bytes) {
       if (text.size() == head.table_length) bytes.replace(head.table, text.size(), text);
     } catch (const nlohmann::json::exception&) {
     }
-    head.number = at == 0 ? 0 : last.number + 1, head.previous = last.hash;
+    head.number = at == 0 ? 0 : last.number + 1;
+    head.previous = last.hash;
     head.hash = head.own_hash();
     std::memcpy(bytes.data() + at, &head, sizeof head);
     last = Commit();
-    last.number = head.number, last.table = head.table, last.table_length = head.table_length;
-    last.table_hash = hash_of(bytes.data() + head.table, head.table_length), last.head_hash = head.hash;
+    last.number = head.number;
+    last.table = head.table;
+    last.table_length = head.table_length;
+    last.table_hash = hash_of(bytes.data() + head.table, head.table_length);
+    last.head_hash = head.hash;
     last.hash = last.own_hash();
     std::memcpy(bytes.data() + commit_at, &last, sizeof last);
     at = commit_at + sizeof last;

@@ -62,8 +62,12 @@ inline void change(Values& v, geo::Random& random, int changes) {
     v.to.insert(v.to.begin() + static_cast<std::ptrdiff_t>(at), other.begin(), other.end());
     v.position[3 * row + random.below(3)] = random.uniform();
     v.mark[row] = 1;
-    if (random.below(3) == 0)
-      v.position.insert(v.position.end(), {1, 2, 3}), v.count.push_back(1), v.to.push_back(row), v.mark.push_back(0);
+    if (random.below(3) == 0) {
+      v.position.insert(v.position.end(), {1, 2, 3});
+      v.count.push_back(1);
+      v.to.push_back(row);
+      v.mark.push_back(0);
+    }
   }
 }
 

@@ -47,11 +47,21 @@ class PlyText {
       if (!mesh.source.empty()) p.put(mesh.source[t]);
       p.end();
     }
-    for (const auto& f : fronts) p.put(f.crack), p.put(f.step), p.put<std::uint8_t>(f.closed), p.end();
+    for (const auto& f : fronts) {
+      p.put(f.crack);
+      p.put(f.step);
+      p.put<std::uint8_t>(f.closed);
+      p.end();
+    }
     for (std::uint32_t i = 0; i < fronts.size(); ++i)
       for (std::uint32_t s = 0; s < fronts[i].segments.size(); ++s)
-        for (const auto& q : fronts[i].segments[s])
-          p.put(i), p.put(s), p.put(static_cast<std::int32_t>(q.id.value)), p.point(q.position), p.end();
+        for (const auto& q : fronts[i].segments[s]) {
+          p.put(i);
+          p.put(s);
+          p.put(static_cast<std::int32_t>(q.id.value));
+          p.point(q.position);
+          p.end();
+        }
     return p.out_;
   }
 
@@ -71,7 +81,11 @@ class PlyText {
     if (format_ == big) std::reverse(raw, raw + sizeof value);
     out_.append(raw, sizeof value);
   }
-  void point(const geo::Vec3& p) { put(p.x()), put(p.y()), put(p.z()); }
+  void point(const geo::Vec3& p) {
+    put(p.x());
+    put(p.y());
+    put(p.z());
+  }
   void end() {
     if (format_ == ascii) out_ += '\n';
   }
@@ -217,6 +231,7 @@ inline std::string sample_checkpoint(const geo::Body& body) {
   state.body_index.assign(body.nodes.size(), 0);
   const geo::FrontState front = cut_block().fronts[1];
   state.fronts = {{}, {{front, std::vector<double>(front.points.size(), 0.5)}}};
-  state.time = 0.5, state.frame = 12;
+  state.time = 0.5;
+  state.frame = 12;
   return bytes_of([&](auto& out) { geo::write_checkpoint(out, body, state, 7); });
 }

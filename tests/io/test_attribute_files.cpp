@@ -36,14 +36,17 @@ TriangleMesh dressed(TriangleMesh mesh, bool smooth, bool coarse) {
   Attributes& a = mesh.attributes;
   std::vector<Vec3> normal;
   std::vector<Color> color;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    normal.push_back({number(), number(), number()}), color.push_back({shade(), shade(), shade(), 1});
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    normal.push_back({number(), number(), number()});
+    color.push_back({shade(), shade(), shade(), 1});
+  }
   a.group_names = {"skin of the lid", "base", "stalk"};
   a.materials = "apple.mtl";
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     a.group.push_back(static_cast<std::int32_t>(t < 3 ? t : random.below(3)));
     a.uv.push_back({Vec2(number(), number()), Vec2(number(), number()), Vec2(number(), number())});
-    a.normal.emplace_back(), a.color.emplace_back();
+    a.normal.emplace_back();
+    a.color.emplace_back();
     for (int k = 0; k < 3; ++k) {
       a.normal[t][k] = smooth ? normal[mesh.triangles[t][k]] : Vec3(number(), number(), number());
       a.color[t][k] = smooth ? color[mesh.triangles[t][k]] : Color(shade(), shade(), shade(), shade());

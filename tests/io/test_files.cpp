@@ -164,7 +164,8 @@ TEST_CASE("a body of version 1 is read, and written whole when it is updated") {
   for (const char* name : {"graph/count", "graph/to", "graph/bits", "graph/paths"}) sections.erase(name);
   const auto put = [&](const std::string& name, const char* dtype, const auto& values) {
     auto& s = sections[name];
-    s.dtype = dtype, s.shape = {values.size()};
+    s.dtype = dtype;
+    s.shape = {values.size()};
     s.bytes.assign(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
   };
   std::vector<std::uint32_t> edge, edge_ends, to, warped, ends;
@@ -172,13 +173,20 @@ TEST_CASE("a body of version 1 is read, and written whole when it is updated") {
   for (std::uint32_t i = 0; i < body.nodes.size(); ++i) {
     for (const NodeId j : body.graph.edges(NodeId(i)))
       if (j.value > i) edge.push_back(j.value);
-    for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i)))
-      to.push_back(n.to.value), warped.push_back(n.warped), distance.push_back(n.distance);
-    edge_ends.push_back(static_cast<std::uint32_t>(edge.size())), ends.push_back(static_cast<std::uint32_t>(to.size()));
+    for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i))) {
+      to.push_back(n.to.value);
+      warped.push_back(n.warped);
+      distance.push_back(n.distance);
+    }
+    edge_ends.push_back(static_cast<std::uint32_t>(edge.size()));
+    ends.push_back(static_cast<std::uint32_t>(to.size()));
   }
-  put("graph/ends", "u4", edge_ends), put("graph/to", "u4", edge);
-  put("neighbors/ends", "u4", ends), put("neighbors/to", "u4", to), put("neighbors/warped", "u4", warped),
-      put("neighbors/distance", "f4", distance);
+  put("graph/ends", "u4", edge_ends);
+  put("graph/to", "u4", edge);
+  put("neighbors/ends", "u4", ends);
+  put("neighbors/to", "u4", to);
+  put("neighbors/warped", "u4", warped);
+  put("neighbors/distance", "f4", distance);
   for (auto& [key, s] : sections) {
     table.push_back({{"name", key},
                      {"dtype", s.dtype},
@@ -376,8 +384,8 @@ TEST_CASE("a run as USD has each frame's triangles where they are others than be
       if (i == 0 || random.below(2) == 0) {
         for (std::size_t t = 0, triangles = 1 + random.below(3); t < triangles; ++t) {
           const auto a = static_cast<std::uint32_t>(random.below(3));
-          frames[i].triangles.push_back({a, (a + 1) % 3, (a + 2) % 3}),
-              frames[i].patch.push_back(static_cast<std::int32_t>(random.below(2)));
+          frames[i].triangles.push_back({a, (a + 1) % 3, (a + 2) % 3});
+          frames[i].patch.push_back(static_cast<std::int32_t>(random.below(2)));
         }
       } else {
         frames[i] = frames[i - 1];
@@ -391,7 +399,9 @@ TEST_CASE("a run as USD has each frame's triangles where they are others than be
     const auto add = [&](int which, std::string& text, std::size_t i, const std::string& list) {
       if (i > 0 && list == last[which]) return;
       if (i > written[which] + 1) text += "            " + std::to_string(i - 1) + ": [" + last[which] + "],\n";
-      text += "            " + std::to_string(i) + ": [" + list + "],\n", last[which] = list, written[which] = i;
+      text += "            " + std::to_string(i) + ": [" + list + "],\n";
+      last[which] = list;
+      written[which] = i;
     };
     std::string points;
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -399,7 +409,8 @@ TEST_CASE("a run as USD has each frame's triangles where they are others than be
       for (const Triangle& t : frames[i].triangles)
         for (const auto v : t) corners += (corners.empty() ? "" : ", ") + std::to_string(v);
       for (const auto one : frames[i].patch) patch += (patch.empty() ? "" : ", ") + std::to_string(one);
-      add(0, indices, i, corners), add(1, patches, i, patch);
+      add(0, indices, i, corners);
+      add(1, patches, i, patch);
       const std::string point = "(" + std::to_string(i) + ", 0.5, -0.001)";
       points += "            " + std::to_string(i) + ": [" + point + ", " + point + ", " + point + "],\n";
     }

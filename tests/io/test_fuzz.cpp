@@ -61,7 +61,8 @@ std::string sealed(Random& random, const std::string& good) {
     // Most keep their size; what fits no shape is for the table above.
     if (random.below(4)) s.bytes.resize(size);
     const std::size_t width = kerf::size_of(s.dtype) * (s.shape.size() > 1 ? s.shape[1] : 1);
-    s.bytes.resize(s.bytes.size() / width * width), s.shape[0] = s.bytes.size() / width;
+    s.bytes.resize(s.bytes.size() / width * width);
+    s.shape[0] = s.bytes.size() / width;
   }
   return bytes_of([&](auto& out) { write_kerf(out, sections); });
 }
@@ -90,7 +91,8 @@ Use use_fronts(std::vector<Front> fronts) {
     for (const auto& f : fronts) {
       if (f.is_sheet()) {
         TriangleMesh sheet;
-        sheet.vertices = f.steps[0], sheet.triangles = f.triangles;
+        sheet.vertices = f.steps[0];
+        sheet.triangles = f.triangles;
         insert_sheet(k, sheet, k.crack_count() + 1);
         continue;
       }

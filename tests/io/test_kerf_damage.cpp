@@ -38,10 +38,12 @@ Appended appended(std::uint64_t seed) {
   const std::string path = folder.file("a.kerf", v.bytes());
   change(v, random, 2);
   update(path, v);
-  a.before = read_all(path), a.old_state = state_of(a.before);
+  a.before = read_all(path);
+  a.old_state = state_of(a.before);
   change(v, random, 2);
   update(path, v);
-  a.after = read_all(path), a.new_state = state_of(v.bytes());
+  a.after = read_all(path);
+  a.new_state = state_of(v.bytes());
   REQUIRE(a.after.compare(0, a.before.size(), a.before) == 0);
   REQUIRE(a.old_state != a.new_state);
   return a;

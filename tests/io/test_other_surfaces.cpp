@@ -36,9 +36,13 @@ Chunk colored_block() {
     Vec3 middle = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& p = chunk.mesh.vertices[t[k]];
-      uv[k] = {p.x() / 4, p.y() + p.z() / 8}, color[k] = {p.x() / 2, p.y(), p.z(), 1}, middle += p / 3;
+      uv[k] = {p.x() / 4, p.y() + p.z() / 8};
+      color[k] = {p.x() / 2, p.y(), p.z(), 1};
+      middle += p / 3;
     }
-    a.uv.push_back(uv), a.color.push_back(color), a.group.push_back(middle.x() > 1);
+    a.uv.push_back(uv);
+    a.color.push_back(color);
+    a.group.push_back(middle.x() > 1);
   }
   return chunk;
 }

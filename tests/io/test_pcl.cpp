@@ -12,7 +12,9 @@ TEST_CASE("PCL reads the nodes that are written") {
   geo::NodeSet nodes;
   for (int i = 0; i < 5; ++i) {
     nodes.position.push_back({0.1 * i, 1.0 / (i + 1), -2.0 * i});
-    nodes.radius.push_back(0.5 + i), nodes.spacing.push_back(0.25), nodes.volume.push_back(1e-3 * (i + 1));
+    nodes.radius.push_back(0.5 + i);
+    nodes.spacing.push_back(0.25);
+    nodes.volume.push_back(1e-3 * (i + 1));
   }
   const auto path =
       (std::filesystem::temp_directory_path() / ("kerf-pcl-" + std::to_string(std::random_device{}()) + ".pcd"))

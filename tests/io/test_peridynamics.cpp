@@ -31,7 +31,8 @@ Body random_body(Random& random) {
                                                     : make_block({1, 1, 0.7}, 0.25);
   const Box3 box = bounding_box(model);
   SampleOptions options;
-  options.spacing = (0.07 + 0.05 * random.uniform()) * box.diagonal(), options.levels = 1 + int(random.below(2));
+  options.spacing = (0.07 + 0.05 * random.uniform()) * box.diagonal();
+  options.levels = 1 + int(random.below(2));
   options.pattern = random.below(4) ? NodePattern::jitter : NodePattern::grid;
   options.seed = random.below(1000);
   Body body = build_body(Complex::from_skin(model), sample_nodes(model, options));
@@ -142,7 +143,9 @@ NodeTable read_nodes_table(const std::string& text) {
   std::istringstream in(text);
   double x, y, z, block, volume;
   while (in >> x >> y >> z >> block >> volume) {
-    table.position.push_back({x, y, z}), table.block.push_back(std::size_t(block)), table.volume += volume;
+    table.position.push_back({x, y, z});
+    table.block.push_back(std::size_t(block));
+    table.volume += volume;
   }
   return table;
 }
@@ -161,7 +164,10 @@ void apply_precracks(const std::string& text, Families& families) {
       for (std::uint32_t i; numbers >> i;) sets[first].push_back(i - 1);
     } else if (line.rfind("    precrack!(", 0) == 0) {
       for (const auto i : sets.at(first))
-        for (const auto j : sets.at(second.substr(1, second.find(';') - 1))) families[i].erase(j), families[j].erase(i);
+        for (const auto j : sets.at(second.substr(1, second.find(';') - 1))) {
+          families[i].erase(j);
+          families[j].erase(i);
+        }
     }
   }
 }
@@ -189,8 +195,10 @@ TEST_CASE("bonds for peridynamics cross no face, and all others are there, in th
     std::set<std::pair<NodeId, NodeId>> cut;
     for (std::uint32_t i = 0; i < whole.size(); ++i)
       for (const auto j : whole[i])
-        if (crossed(faces, body.nodes.position[i], body.nodes.position[j]))
-          expected[i].erase(j), cut.insert({NodeId(std::min(i, j)), NodeId(std::max(i, j))});
+        if (crossed(faces, body.nodes.position[i], body.nodes.position[j])) {
+          expected[i].erase(j);
+          cut.insert({NodeId(std::min(i, j)), NodeId(std::max(i, j))});
+        }
     REQUIRE(families_of(model) == expected);
     CHECK(std::vector(cut.begin(), cut.end()) == model.broken);
     broken += cut.size();

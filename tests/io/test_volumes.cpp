@@ -67,7 +67,8 @@ TEST_CASE("a level set and a fog volume come back as the solid that was written,
       else
         CHECK(signed_volume(surface) < signed_volume(mesh));
       SampleOptions options;
-      options.count = 800, options.across = 3;
+      options.count = 800;
+      options.across = 3;
       const NodeSet nodes = sample_nodes(surface, options);
       CHECK(nodes.size() == 800);
       const TriangleBvh tree(corners_of(surface));

@@ -26,10 +26,13 @@ class PageModel {
 
   /// Takes a message; throws where it is shorter or longer than it says, or does not follow.
   void take(const std::string& bytes) {
-    bytes_ = bytes, at_ = 0;
-    kind = get<std::uint8_t>(), flags = get<std::uint8_t>();
+    bytes_ = bytes;
+    at_ = 0;
+    kind = get<std::uint8_t>();
+    flags = get<std::uint8_t>();
     if (get<std::uint16_t>() != 1) throw std::runtime_error("version");
-    sequence = get<std::uint32_t>(), time = get<double>();
+    sequence = get<std::uint32_t>();
+    time = get<double>();
     if (kind == 5) {
       notice = nlohmann::json::parse(bytes_.substr(at_));
       return;
@@ -69,7 +72,8 @@ class PageModel {
     const auto slots = get<std::uint32_t>();
     get<std::uint32_t>();
     scene = text(get<std::uint32_t>());
-    triangles.resize(slots), patch.resize(slots);
+    triangles.resize(slots);
+    patch.resize(slots);
     for (auto& t : triangles) t = corners();
     for (int& p : patch) p = get<std::uint8_t>();
     align();
@@ -83,8 +87,10 @@ class PageModel {
     std::vector<std::uint32_t> slots;
     for (std::uint32_t i = 0; i < added; ++i) {
       slots.push_back(get<std::uint32_t>());
-      if (slots.back() >= triangles.size())
-        triangles.resize(slots.back() + 1, {0, 0, 0}), patch.resize(triangles.size());
+      if (slots.back() >= triangles.size()) {
+        triangles.resize(slots.back() + 1, {0, 0, 0});
+        patch.resize(triangles.size());
+      }
       triangles[slots.back()] = corners();
     }
     for (const auto slot : slots) patch[slot] = get<std::uint8_t>();
@@ -103,7 +109,8 @@ class PageModel {
       align();
     };
     points(positions);
-    node_positions.resize(flags & 1 ? nodes : 0), stress.resize(flags & 2 ? nodes : 0);
+    node_positions.resize(flags & 1 ? nodes : 0);
+    stress.resize(flags & 2 ? nodes : 0);
     if (flags & 1) points(node_positions);
     if (flags & 2) {
       const float most = get<float>();

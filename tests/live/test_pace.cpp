@@ -76,9 +76,15 @@ TEST_CASE("effort stays within its bounds whatever frames cost, and settles wher
       REQUIRE(now.accuracy <= least.accuracy);
       REQUIRE((now.steps >= least.steps && now.steps <= own.steps));
     };
-    for (int i = 0; i < 400; ++i) now = frames.one(random.uniform(0.1, 4), own, now), require_bounds();
+    for (int i = 0; i < 400; ++i) {
+      now = frames.one(random.uniform(0.1, 4), own, now);
+      require_bounds();
+    }
     const double load = random.uniform(0.1, 4);
-    for (int i = 0; i < 2000; ++i) now = frames.one(load, own, now), require_bounds();
+    for (int i = 0; i < 2000; ++i) {
+      now = frames.one(load, own, now);
+      require_bounds();
+    }
     const Effort settled = now;
     for (int i = 0; i < 300; ++i) now = frames.one(load, own, now);
     CHECK(now == settled);

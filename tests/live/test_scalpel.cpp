@@ -73,7 +73,10 @@ TEST_CASE("the scalpel's edge goes forward in all its points, whatever the norma
       REQUIRE(session.advance().empty());
       if (session.edges().empty()) continue;
       const std::vector<Vec3> after = session.edges().at(0).first;
-      if (!before.empty()) ++moved, backward += !goes_forward(before, after);
+      if (!before.empty()) {
+        ++moved;
+        backward += !goes_forward(before, after);
+      }
       before = after;
     }
     session.advance();

@@ -48,7 +48,8 @@ std::pair<int, std::string> answer(const Served& s, const std::string& target, c
   beast::http::request<beast::http::empty_body> request(verb, target, 11);
   if (!host.empty()) request.set(beast::http::field::host, host);
   if (!upgrade.empty()) {
-    request.set(beast::http::field::upgrade, "websocket"), request.set(beast::http::field::connection, "Upgrade");
+    request.set(beast::http::field::upgrade, "websocket");
+    request.set(beast::http::field::connection, "Upgrade");
     request.set(beast::http::field::sec_websocket_key, "AAAAAAAAAAAAAAAAAAAAAA==");
     request.set(beast::http::field::sec_websocket_version, "13");
   }
@@ -63,12 +64,18 @@ std::pair<int, std::string> answer(const Served& s, const std::string& target, c
 std::shared_ptr<Snapshot> snapshot(std::uint64_t number, std::uint32_t revision = 1) {
   auto s = std::make_shared<Snapshot>();
   auto t = std::make_shared<Topology>();
-  t->revision = revision, t->vertices = 4;
-  t->triangle = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}}, t->patch = {0, 1, 200};
-  t->triangle.resize(2 + revision % 2), t->patch.resize(2 + revision % 2);
-  s->number = number, s->time = double(number) / 60, s->topology = t;
+  t->revision = revision;
+  t->vertices = 4;
+  t->triangle = {{0, 1, 2}, {0, 2, 3}, {1, 2, 3}};
+  t->patch = {0, 1, 200};
+  t->triangle.resize(2 + revision % 2);
+  t->patch.resize(2 + revision % 2);
+  s->number = number;
+  s->time = double(number) / 60;
+  s->topology = t;
   s->positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, double(number)}};
-  s->node_count = 2, s->statistics = "{\"number\":" + std::to_string(number);
+  s->node_count = 2;
+  s->statistics = "{\"number\":" + std::to_string(number);
   static const auto scene = std::make_shared<const std::string>("{\"name\":\"test\"}");
   s->scene = scene;
   return s;
@@ -145,7 +152,9 @@ TEST_CASE("a stroke is late by the time that its begin has waited") {
   Inbox inbox;
   const auto before = std::chrono::steady_clock::now();
   for (const Phase phase : {Phase::begin, Phase::move, Phase::end}) inbox.put({7, Stroke{1, 1, phase}});
-  inbox.put({7, Reset{}}), inbox.put({7, Grab{}}), inbox.put({7, Leave{}});
+  inbox.put({7, Reset{}});
+  inbox.put({7, Grab{}});
+  inbox.put({7, Leave{}});
   const auto after = std::chrono::steady_clock::now();
   const auto requests = inbox.take();
   REQUIRE(requests.size() == 6);
@@ -192,7 +201,8 @@ TEST_CASE("nodes, stress and graph go to the page that wants them") {
   Served s;
   auto full = [](std::uint64_t n) {
     auto x = snapshot(n);
-    x->nodes = {{0, 0, 0.5}, {1, 2, 3}}, x->stress = {10, 5};
+    x->nodes = {{0, 0, 0.5}, {1, 2, 3}};
+    x->stress = {10, 5};
     x->graph = std::make_shared<std::vector<std::pair<std::uint32_t, std::uint32_t>>>(1, std::pair(0u, 1u));
     x->graph_number = 1;
     return x;
@@ -367,7 +377,8 @@ TEST_CASE("a model is opened for the page itself only, and what is wrong with it
   std::thread simulation([&] {
     auto requests = wait_for<Open>(s.inbox, 1);
     auto& open = std::get<Open>(requests[0].what);
-    name = open.name, bytes = open.bytes;
+    name = open.name;
+    bytes = open.bytes;
     open.answer({});
     requests = wait_for<Open>(s.inbox, 1);
     std::get<Open>(requests[0].what).answer({.error = "a.off: is open"});
@@ -441,12 +452,16 @@ TEST_CASE("a move takes the place of the move before it and keeps the path, and 
   Inbox inbox;
   const auto stroke = [](std::uint64_t id, Phase phase, double x) {
     Stroke s;
-    s.id = id, s.phase = phase, s.origin = {x, 0, 0};
+    s.id = id;
+    s.phase = phase;
+    s.origin = {x, 0, 0};
     return s;
   };
   inbox.put({1, Command(stroke(1, Phase::begin, 0))});
-  for (int i = 1; i < 9; ++i)
-    inbox.put({1, Command(stroke(1, Phase::move, i))}), inbox.put({2, Command(stroke(1, Phase::move, -i))});
+  for (int i = 1; i < 9; ++i) {
+    inbox.put({1, Command(stroke(1, Phase::move, i))});
+    inbox.put({2, Command(stroke(1, Phase::move, -i))});
+  }
   inbox.put({1, Command(Undo{})});
   inbox.put({1, Command(stroke(1, Phase::move, 9))});
   inbox.put({1, Command(stroke(1, Phase::end, 10))});

@@ -157,7 +157,8 @@ TEST_CASE("a stroke cuts, and the page has the run's surface after each message"
     require_same(page, session.run());
   }
   CHECK(deltas > 3);
-  session.advance(), session.advance();
+  session.advance();
+  session.advance();
   CHECK(force > 0);
   CHECK(session.pieces() == 2);
   CHECK(session.strokes() == 1);
@@ -183,7 +184,8 @@ TEST_CASE("undo and reset go back, and the recording gives the same bytes") {
   Grab grab{9, 3, Phase::begin, {5, {0.4, 0.3, 0.3}}, {0.5, 0.5, 1.5}};
   session.obey(1, grab);
   for (int i = 0; i < 6; ++i) {
-    grab.phase = i == 5 ? Phase::end : Phase::move, grab.to = {0.5, 0.5, 1.5 + 0.02 * i};
+    grab.phase = i == 5 ? Phase::end : Phase::move;
+    grab.to = {0.5, 0.5, 1.5 + 0.02 * i};
     session.obey(1, grab);
     session.advance();
   }
@@ -253,8 +255,11 @@ TEST_CASE("requests that cannot be obeyed are refused, and hands of a page that 
   for (std::uint64_t id = 10; id < 17; ++id) session.obey(2, knife(id, Phase::move, -0.45));
   session.advance();
   CHECK(session.edges().size() == 8);
-  session.leave(1), session.leave(2);
-  session.advance(), session.advance(), session.advance();
+  session.leave(1);
+  session.leave(2);
+  session.advance();
+  session.advance();
+  session.advance();
   CHECK(session.edges().empty());
   CHECK(session.strokes() == 0);                // none has cut
   session.obey(1, knife(1, Phase::move, 0.5));  // of a stroke that is over: nothing
@@ -300,7 +305,10 @@ TEST_CASE("undo states and recordings are bounded") {
     CHECK_THROWS_AS(session.undo(), BadMessage);
     CHECK(session.recording().blades.size() == 1);
   }
-  bounds.saved = 16, bounds.saved_bytes = 1, bounds.recorded = 2, bounds.changes = 1;
+  bounds.saved = 16;
+  bounds.saved_bytes = 1;
+  bounds.recorded = 2;
+  bounds.changes = 1;
   Session session(setup(), {}, bounds);
   cut(session, 1, -0.3, 0.2);
   cut(session, 2, 0.3, 1.2);
@@ -314,7 +322,8 @@ TEST_CASE("undo states and recordings are bounded") {
   session.undo();
   session.obey(1, knife(4, Phase::begin, 0));
   session.reset();
-  bounds.recorded = 100, bounds.keys = 5;
+  bounds.recorded = 100;
+  bounds.keys = 5;
   Session few_keys(setup(), {}, bounds);
   cut(few_keys, 1, -0.3, 0.2);
   CHECK_THROWS_AS(few_keys.obey(1, knife(2, Phase::begin, 0)), BadMessage);
@@ -405,7 +414,8 @@ TEST_CASE("a grab that stays outlives its page, takes two keys while it rests, a
   Grab grab{9, 3, Phase::begin, {5, {0.4, 0.3, 0.3}}, {0.5, 0.5, 1.5}};
   session.obey(1, grab);
   session.advance();
-  grab.phase = Phase::hold, grab.to = {0.5, 0.5, 1.4};
+  grab.phase = Phase::hold;
+  grab.to = {0.5, 0.5, 1.4};
   session.obey(1, grab);
   session.leave(1);
   for (int i = 0; i < 30; ++i) session.advance();
@@ -482,7 +492,8 @@ TEST_CASE("twenty steps of undo for a body of 30,000 triangles take less than 30
     const double y = 0.02 + 0.047 * double(id);
     Stroke stroke{id, 1, Phase::begin, {-0.1, y, 1.2}, {0, 0, -1}, 0.5};
     session.obey(1, stroke);
-    stroke.phase = Phase::end, stroke.origin.x() = 0.9;
+    stroke.phase = Phase::end;
+    stroke.origin.x() = 0.9;
     session.obey(1, stroke);
     while (!session.waiting().empty()) REQUIRE(session.advance(true).empty());
   }
@@ -550,7 +561,8 @@ TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
           break;
         case 3:  // a page that lost its connection gets the whole state
           s = shown(session);
-          page = PageModel(), page.take(encode_state(s, {1}));
+          page = PageModel();
+          page.take(encode_state(s, {1}));
           known = s.topology;
           require_same(page, session.run());
           break;

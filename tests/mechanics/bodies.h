@@ -11,7 +11,8 @@ namespace geo {
 /// A block [0, size] with jittered nodes of one spacing.
 inline Body block_body(const Vec3& size, double spacing, double edge = 0) {
   SampleOptions options;
-  options.spacing = spacing, options.levels = 1;
+  options.spacing = spacing;
+  options.levels = 1;
   const TriangleMesh mesh = make_block(size, edge > 0 ? edge : 2 * spacing);
   return build_body(Complex::from_skin(mesh), sample_nodes(mesh, options));
 }

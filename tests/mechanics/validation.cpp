@@ -18,7 +18,10 @@ double spacing_for(int across) { return 1.03 / across; }
 
 Material steel_like() {
   Material m;
-  m.young = 1e5, m.poisson = 0.3, m.density = 1000, m.damping = 0;
+  m.young = 1e5;
+  m.poisson = 0.3;
+  m.density = 1000;
+  m.damping = 0;
   return m;
 }
 
@@ -41,8 +44,10 @@ struct Bar {
     environment.load.assign(body.nodes.size(), Vec3::Zero());
     double total = 0, place = 0;
     for (std::size_t i = 0; i < body.nodes.size(); ++i)
-      if (at_tip(body.nodes.position[i]))
-        total += body.nodes.volume[i], place += body.nodes.volume[i] * (body.nodes.position[i].x() - foot);
+      if (at_tip(body.nodes.position[i])) {
+        total += body.nodes.volume[i];
+        place += body.nodes.volume[i] * (body.nodes.position[i].x() - foot);
+      }
     for (std::size_t i = 0; i < body.nodes.size(); ++i)
       if (at_tip(body.nodes.position[i])) environment.load[i] = body.nodes.volume[i] / total * force;
     return place / total;
@@ -57,7 +62,10 @@ struct Bar {
   double along_load(const std::vector<Vec3>& u) const {
     double work = 0;
     Vec3 force = Vec3::Zero();
-    for (std::size_t i = 0; i < u.size(); ++i) work += environment.load[i].dot(u[i]), force += environment.load[i];
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      work += environment.load[i].dot(u[i]);
+      force += environment.load[i];
+    }
     return work / force.norm();
   }
 
@@ -100,7 +108,15 @@ std::vector<Finding> patch(int size) {
     }
     Solid solid(body, steel_like());
     Mat3 linear;
-    linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
+    linear << 0.1;
+    0.02;
+    -0.03;
+    0.01;
+    -0.05;
+    0.04;
+    0.0;
+    0.06;
+    0.02;
     std::vector<Vec3> u;
     for (const Vec3& x : body.nodes.position) u.push_back(linear * x);
     double worst = 0;
@@ -130,10 +146,13 @@ std::vector<Finding> tension(int size) {
     for (std::size_t i = 0; i < g.size(); ++i) {
       const auto& p = solid.discretisation().points.blocks[b].points[i];
       if (std::abs(p.position.x() - bar.foot - 2.5) > 1) continue;
-      volume += p.volume, strain += p.volume * g[i](0, 0), across += 0.5 * p.volume * (g[i](1, 1) + g[i](2, 2));
+      volume += p.volume;
+      strain += p.volume * g[i](0, 0);
+      across += 0.5 * p.volume * (g[i](1, 1) + g[i](2, 2));
     }
   }
-  strain /= volume, across /= volume;
+  strain /= volume;
+  across /= volume;
   return {{"Bar in tension: Young's modulus, Pa", "E = F / (A ε)", force / strain, m.young, 0.02},
           {"Bar in tension: Poisson's ratio", "ν = −ε⊥ / ε", -across / strain, m.poisson, 0.02}};
 }
@@ -170,8 +189,10 @@ std::vector<Finding> frequency(int size) {
       bar.environment.load.push_back(bar.environment.fixed[i] ? Vec3(Vec3::Zero())
                                                               : Vec3(1e-5 / most * solid.mass(NodeId(i)) * shape[i]));
     shape = bar.rest(solid);
-    for (std::size_t i = 0; i < shape.size(); ++i)
-      stiff += shape[i].dot(bar.environment.load[i]), inert += solid.mass(NodeId(i)) * shape[i].squaredNorm();
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+      stiff += shape[i].dot(bar.environment.load[i]);
+      inert += solid.mass(NodeId(i)) * shape[i].squaredNorm();
+    }
     lambda = stiff / inert;
   }
   const double exact =
@@ -195,10 +216,14 @@ std::vector<Finding> free_fall(int size) {
     for (std::size_t i = 0; i < body.nodes.size(); ++i) {
       const std::size_t side = body.nodes.position[i].x() > 0.93;
       const double m = solid.mass(NodeId(i));
-      mass[side] += m, sums[2 * side] += m * (body.nodes.position[i] + state.displacement[i]),
-          sums[2 * side + 1] += m * state.velocity[i];
+      mass[side] += m;
+      sums[2 * side] += m * (body.nodes.position[i] + state.displacement[i]);
+      sums[2 * side + 1] += m * state.velocity[i];
     }
-    for (std::size_t side = 0; side < 2; ++side) sums[2 * side] /= mass[side], sums[2 * side + 1] /= mass[side];
+    for (std::size_t side = 0; side < 2; ++side) {
+      sums[2 * side] /= mass[side];
+      sums[2 * side + 1] /= mass[side];
+    }
     return sums;
   };
   auto front = begin_front(blade_at({0.93, -0.2, 0.8}, {0.93, 0.8, 0.8}, {0, 0, -0.25}, 0), false, 1);

@@ -15,7 +15,8 @@ using namespace geo;
 
 Eigen::Isometry3d pose(const Vec3& place, const Vec3& normal) {
   Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
-  at.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix(), at.translation() = place;
+  at.linear() = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+  at.translation() = place;
   return at;
 }
 
@@ -36,7 +37,8 @@ class Press {
     for (std::size_t i = 0; i < zero.size(); ++i)
       if ((body.nodes.position[i] - box_.center()).norm() < (body.nodes.position[middle] - box_.center()).norm())
         middle = i;
-    environment_.fixed.assign(zero.size(), 0), environment_.fixed[middle] = 1;
+    environment_.fixed.assign(zero.size(), 0);
+    environment_.fixed[middle] = 1;
     environment_.gravity.setZero();
   }
   double close(double depth) {
@@ -71,7 +73,10 @@ class Press {
 
 Material soft() {
   Material m;
-  m.young = 1e5, m.poisson = 0.3, m.density = 1000, m.damping = 0;
+  m.young = 1e5;
+  m.poisson = 0.3;
+  m.density = 1000;
+  m.damping = 0;
   return m;
 }
 
@@ -83,7 +88,8 @@ std::vector<Finding> hertz(int size) {
   std::vector<Finding> found;
   for (const double spacing : size ? std::vector{0.1, 0.07, 0.05} : std::vector{0.14, 0.1}) {
     SampleOptions sampling;
-    sampling.spacing = spacing, sampling.levels = 3;
+    sampling.spacing = spacing;
+    sampling.levels = 3;
     Press press(make_sphere(int(std::lround(1.1 / spacing))), sampling, m, 300 * m.young);
     const double depth = 0.06;
     found.push_back(
@@ -99,7 +105,8 @@ std::vector<Finding> brazilian_disk(int) {
   const Material m = soft();
   const double thickness = 0.2, spacing = 0.05;
   SampleOptions sampling;
-  sampling.spacing = spacing, sampling.levels = 1;
+  sampling.spacing = spacing;
+  sampling.levels = 1;
   Press press(make_disk(thickness, spacing), sampling, m, 1000 * m.young);
   const double force = press.close(0.01);
   const Mat3 stress = press.solid.stress_at(press.state, {0.5, 0.5 * thickness, 0.5}, 0.1);

@@ -25,7 +25,8 @@ Changes cut_at_random(double spacing, double most_bend, std::uint64_t first, int
     Random random(seed);
     Body body = block_body({1, 1, 1}, spacing);
     Material material;
-    material.young = 1e5, material.poisson = 0.3;
+    material.young = 1e5;
+    material.poisson = 0.3;
     Solid solid(body, material);
     const std::vector<Vec3> zero(body.nodes.size(), Vec3::Zero());
     State state{zero, zero};
@@ -45,7 +46,8 @@ Changes cut_at_random(double spacing, double most_bend, std::uint64_t first, int
       const double before = solid.energy(state.displacement);
       solid.update(body, split(body, front, blade_at(a, b, step, k, 3)), state);
       const double rise = solid.energy(state.displacement) / before - 1;
-      all.most = std::max(all.most, most_bend > 0 ? rise : std::abs(rise)), all.sum += rise;
+      all.most = std::max(all.most, most_bend > 0 ? rise : std::abs(rise));
+      all.sum += rise;
     }
   }
   return all;

@@ -62,7 +62,8 @@ class Run {
     for (std::size_t i = 0; i < sim_.body().nodes.size(); ++i) {
       if (sim_.state().body_index[i] != body) continue;
       const double own = sim_.solid().mass(NodeId(i));
-      mass += own, sum += own * of(i);
+      mass += own;
+      sum += own * of(i);
     }
     return sum / mass;
   }

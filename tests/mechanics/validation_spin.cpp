@@ -27,7 +27,10 @@ double kept() {
 double left(const Body& body, double young, double poisson, double accuracy) {
   const std::size_t n = body.nodes.size();
   Material material;
-  material.young = young, material.poisson = poisson, material.density = 1000, material.damping = 0;
+  material.young = young;
+  material.poisson = poisson;
+  material.density = 1000;
+  material.damping = 0;
   Solid solid(body, material);
   State state{std::vector<Vec3>(n, Vec3::Zero()), std::vector<Vec3>(n)};
   for (std::size_t i = 0; i < n; ++i) state.velocity[i] = Vec3(0, 0, rate).cross(body.nodes.position[i]);
@@ -36,8 +39,10 @@ double left(const Body& body, double young, double poisson, double accuracy) {
   const auto momentum = [&] {
     Vec3 middle = Vec3::Zero();
     double mass = 0;
-    for (std::uint32_t i = 0; i < n; ++i)
-      middle += solid.mass(NodeId(i)) * (body.nodes.position[i] + state.displacement[i]), mass += solid.mass(NodeId(i));
+    for (std::uint32_t i = 0; i < n; ++i) {
+      middle += solid.mass(NodeId(i)) * (body.nodes.position[i] + state.displacement[i]);
+      mass += solid.mass(NodeId(i));
+    }
     return (solid.angular_momentum(state) - (middle / mass).cross(solid.momentum(state))).z();
   };
   const double before = momentum();

@@ -23,14 +23,18 @@ TEST_CASE("a node grid answers as a plain list of nodes does, whatever is put in
     std::vector<Vec3> x;
     std::map<std::uint32_t, Vec3> model;
     const auto start = random.below(200);
-    for (std::uint32_t i = 0; i < start; ++i) x.push_back(any()), model[i] = x[i];
+    for (std::uint32_t i = 0; i < start; ++i) {
+      x.push_back(any());
+      model[i] = x[i];
+    }
     NodeGrid grid(0.2, x);
     for (int step = 0; step < 400; ++step) {
       switch (random.below(4)) {
         case 0: {
           const auto row = static_cast<std::uint32_t>(x.size());
           x.push_back(random.below(20) ? any() : Vec3(100 * any()));
-          grid.insert(x, row), model[row] = x[row];
+          grid.insert(x, row);
+          model[row] = x[row];
           break;
         }
         case 1:
@@ -39,7 +43,11 @@ TEST_CASE("a node grid answers as a plain list of nodes does, whatever is put in
             const auto row = it->first;
             grid.erase(row, it->second);
             model.erase(it);
-            if (random.below(2)) x[row] = any(), grid.insert(x, row), model[row] = x[row];  // moved
+            if (random.below(2)) {
+              x[row] = any();
+              grid.insert(x, row);
+              model[row] = x[row];
+            }  // moved
           }
           break;
         case 2: {

@@ -45,7 +45,9 @@ TEST_CASE("leaves are in order, apart, and differ from those they touch by one l
     for (const int across : {0, 3})
       for (const int levels : {1, 2, 4}) {
         SampleOptions options;
-        options.spacing = 0.05 * bounding_box(mesh).diagonal(), options.levels = levels, options.across = across;
+        options.spacing = 0.05 * bounding_box(mesh).diagonal();
+        options.levels = levels;
+        options.across = across;
         const auto leaves = in_one(leaves_of(mesh, options).lists);
         INFO(name << ", across " << across << ", levels " << levels << ", " << leaves.size() << " leaves");
         REQUIRE(leaves.size() > 100);
@@ -67,7 +69,8 @@ TEST_CASE("leaves are in order, apart, and differ from those they touch by one l
 TEST_CASE("five levels in a block leave few nodes in the depth and fine ones at the skin") {
   const auto mesh = make_block({1, 1, 1}, 0.5);
   SampleOptions options;
-  options.spacing = 0.02, options.levels = 5;
+  options.spacing = 0.02;
+  options.levels = 5;
   std::vector<std::size_t> by_level(5, 0);
   for (const Leaf& leaf : in_one(leaves_of(mesh, options).lists)) {
     ++by_level[static_cast<std::size_t>(leaf.cell.level)];
@@ -124,7 +127,10 @@ TEST_CASE("a box and a triangle are called apart only when they are") {
     ++apart;
     for (int k = 0; k < 100; ++k) {  // no point of the triangle is in the box
       double u = random.below(9) / 8.0, v = random.below(9) / 8.0;
-      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+      }
       const Vec3 p = a + u * (b - a) + v * (c - a);
       INFO(i);
       REQUIRE_FALSE(Box3{p, p}.meets(box));
@@ -136,12 +142,16 @@ TEST_CASE("a box and a triangle are called apart only when they are") {
 TEST_CASE("the leaves around a cell are those that touch it") {
   const auto mesh = make_polyp(8);
   SampleOptions options;
-  options.spacing = 0.1, options.levels = 3, options.across = 4;
+  options.spacing = 0.1;
+  options.levels = 3;
+  options.across = 4;
   const auto leaves = in_one(leaves_of(mesh, options).lists);
   std::vector<std::uint64_t> codes;
   std::vector<std::uint8_t> levels;
-  for (const Leaf& leaf : leaves)
-    codes.push_back(morton(leaf.cell.corner)), levels.push_back(static_cast<std::uint8_t>(leaf.cell.level));
+  for (const Leaf& leaf : leaves) {
+    codes.push_back(morton(leaf.cell.corner));
+    levels.push_back(static_cast<std::uint8_t>(leaf.cell.level));
+  }
   const LeafIndex index(codes, levels);
   Random random(3);
   for (int k = 0; k < 300; ++k) {

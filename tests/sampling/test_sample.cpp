@@ -36,7 +36,8 @@ std::pair<double, double> nearest_other(const NodeSet& nodes) {
       if (j != i)
         best = std::min(best,
                         (nodes.position[i] - nodes.position[j]).norm() / std::min(nodes.spacing[i], nodes.spacing[j]));
-    least = std::min(least, best), sum += best;
+    least = std::min(least, best);
+    sum += best;
   }
   return {least, sum / double(nodes.size())};
 }
@@ -49,7 +50,9 @@ TEST_CASE("nodes are inside and own the whole volume, in as many as asked for") 
       for (const int levels : {1, 2, 5}) {
         INFO(name << ", " << count << " nodes, levels " << levels);
         SampleOptions options;
-        options.count = count, options.levels = levels, options.across = levels == 2 ? 3 : 0;
+        options.count = count;
+        options.levels = levels;
+        options.across = levels == 2 ? 3 : 0;
         const NodeSet nodes = sample_nodes(mesh, options);
         CHECK(std::abs(double(nodes.size()) - double(count)) <= 0.02 * double(count));
         require_sound(mesh, nodes);
@@ -59,7 +62,10 @@ TEST_CASE("nodes are inside and own the whole volume, in as many as asked for") 
 TEST_CASE("the same nodes for any number of threads, others for another seed") {
   for (const NodePattern pattern : {NodePattern::jitter, NodePattern::blue, NodePattern::grid}) {
     SampleOptions options;
-    options.count = 3000, options.levels = 3, options.across = 3, options.pattern = pattern;
+    options.count = 3000;
+    options.levels = 3;
+    options.across = 3;
+    options.pattern = pattern;
     const auto mesh = make_polyp(8);
     set_threads(1);
     const NodeSet one = sample_nodes(mesh, options);
@@ -78,7 +84,8 @@ TEST_CASE("a plate of 1:200 has three nodes across, whichever way it lies") {
   for (const bool skew : {false, true}) {
     const TriangleMesh plate = skew ? solids::turned(flat) : flat;
     SampleOptions options;
-    options.spacing = 0.05, options.across = 3;
+    options.spacing = 0.05;
+    options.across = 3;
     SampleReport report;
     const NodeSet nodes = sample_nodes(plate, options, {}, &report);
     CHECK(report.thinnest == Approx(0.005).epsilon(1e-6));
@@ -96,7 +103,8 @@ TEST_CASE("a plate of 1:200 has three nodes across, whichever way it lies") {
 TEST_CASE("a thin curved shell is sampled across, and what is too thin is told") {
   const TriangleMesh shell = solids::shell(0.08);
   SampleOptions options;
-  options.spacing = 0.2, options.across = 3;
+  options.spacing = 0.2;
+  options.across = 3;
   SampleReport report;
   const NodeSet nodes = sample_nodes(shell, options, {}, &report);
   require_sound(shell, nodes);
@@ -150,7 +158,8 @@ TEST_CASE("a slit much narrower than a cell has no nodes in it and some on eithe
 TEST_CASE("support radii change gradually and hold a dozen nodes") {
   const TriangleMesh mesh = make_block({1, 1, 1}, 0.5);
   SampleOptions options;
-  options.spacing = 0.035, options.levels = 5;
+  options.spacing = 0.035;
+  options.levels = 5;
   const NodeSet nodes = sample_nodes(mesh, options);
   double worst = 1;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -159,8 +168,10 @@ TEST_CASE("support radii change gradually and hold a dozen nodes") {
     for (std::size_t j = 0; j < nodes.size(); ++j) {
       const double d = (nodes.position[i] - nodes.position[j]).norm();
       within += j != i && d <= nodes.radius[i];
-      if (j != i && d < nearest)
-        nearest = d, ratio = std::max(nodes.radius[i] / nodes.radius[j], nodes.radius[j] / nodes.radius[i]);
+      if (j != i && d < nearest) {
+        nearest = d;
+        ratio = std::max(nodes.radius[i] / nodes.radius[j], nodes.radius[j] / nodes.radius[i]);
+      }
     }
     worst = std::max(worst, ratio);
     REQUIRE(within >= 12);
@@ -177,7 +188,8 @@ TEST_CASE("blue noise keeps nodes apart") {
   const NodeSet nodes = sample_nodes(mesh, options);
   require_sound(mesh, nodes);
   const auto [least, mean] = nearest_other(nodes);
-  options.pattern = NodePattern::jitter, options.jitter = 0.38;
+  options.pattern = NodePattern::jitter;
+  options.jitter = 0.38;
   const auto [random_least, random_mean] = nearest_other(sample_nodes(mesh, options));
   CAPTURE(least, mean, random_least, random_mean);
   CHECK(least > 0.3);

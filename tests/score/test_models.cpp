@@ -45,7 +45,8 @@ void check_pieces(const TriangleMesh& model, const Complex& cut, const Pieces& p
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       if (mesh.patch[t] != 0) sheets += area_of(mesh, t);
     volume += signed_volume(mesh);
-    mesh.patch.clear(), mesh.site.clear();  // as a mesh of its own
+    mesh.patch.clear();
+    mesh.site.clear();  // as a mesh of its own
     const auto whole = check_surface(mesh, true);
     INFO("piece " << p << ": " << whole.first_problem);
     CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&

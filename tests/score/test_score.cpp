@@ -38,7 +38,8 @@ void check_score(const Complex& model, const ScoreOptions& options) {
   for (std::uint32_t p = 0; p < pieces.count; ++p) {
     TriangleMesh mesh = piece_mesh(cut, pieces, p);
     CHECK(std::abs(signed_volume(mesh) - pieces.volume[p]) <= 1e-12 * had);
-    mesh.patch.clear(), mesh.site.clear();  // as a mesh of its own
+    mesh.patch.clear();
+    mesh.site.clear();  // as a mesh of its own
     const auto whole = check_surface(mesh, true);
     INFO("piece " << p << " " << whole.first_problem);
     CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&
@@ -58,7 +59,8 @@ TEST_CASE("Each pattern parts a ball into as many pieces as wanted", "[score]") 
         ScoreOptions options;
         options.pattern.pattern = pattern_named(name);
         options.pattern.seed = options.jagged.seed = first + static_cast<std::uint64_t>(c);
-        options.jagged.amplitude = amplitude, options.jagged.frequency = 5;
+        options.jagged.amplitude = amplitude;
+        options.jagged.frequency = 5;
         options.pieces = 9;
         INFO(name << ", jagged " << amplitude << ", seed " << options.pattern.seed);
         check_score(ball, options);
@@ -135,7 +137,8 @@ TEST_CASE("A model that is cut already is scored further", "[score]") {
   options.pieces = 4;
   Complex cut = block;
   insert_sheet(cut, make_score(block, options).sheet, 1);
-  options.pieces = 12, options.pattern.seed = 5;
+  options.pieces = 12;
+  options.pattern.seed = 5;
   const Score more = make_score(cut, options);
   CHECK(more.pieces == 12);
   insert_sheet(cut, more.sheet, 2);
@@ -156,7 +159,13 @@ TEST_CASE("Options without sense are refused", "[score]") {
   refused([](auto& o) { o.attempts = 0; });
   refused([](auto& o) { o.pattern.cluster = 0; });
   refused([](auto& o) { o.pattern.grain = 0.5; });
-  refused([](auto& o) { o.pattern.pattern = Pattern::planes, o.pattern.axis = Vec3::Zero(); });
-  refused([](auto& o) { o.jagged.amplitude = 0.1, o.jagged.frequency = 0; });
+  refused([](auto& o) {
+    o.pattern.pattern = Pattern::planes;
+    o.pattern.axis = Vec3::Zero();
+  });
+  refused([](auto& o) {
+    o.jagged.amplitude = 0.1;
+    o.jagged.frequency = 0;
+  });
   CHECK_THROWS_WITH(pattern_named("zigzag"), Catch::Contains("voronoi"));
 }

@@ -61,7 +61,10 @@ TEST_CASE("Voronoi walls stand where the nearest site changes", "[voronoi]") {
     REQUIRE_FALSE(cross_each_other(walls));
     for (int i = 0; i < 100; ++i) {
       Vec3 p, q;
-      for (int k = 0; k < 3; ++k) p[k] = random.uniform(0, k + 1), q[k] = random.uniform(0, k + 1);
+      for (int k = 0; k < 3; ++k) {
+        p[k] = random.uniform(0, k + 1);
+        q[k] = random.uniform(0, k + 1);
+      }
       // Cells are convex: the segment meets no wall exactly when both ends are in one.
       if (seed % 4 != 0) CHECK((crossings(walls, p, q) == 0) == (nearest(sites, p) == nearest(sites, q)));
     }
@@ -135,7 +138,9 @@ TEST_CASE("Jagged walls meet where flat ones did and do not cross", "[jagged]") 
     for (Vec3& s : sites) s = 0.8 * random.uniform() * random.direction();
     TriangleMesh walls = voronoi_walls(sites, skin.box().grown(1));
     JaggedOptions options;
-    options.amplitude = random.uniform(0, 0.15), options.frequency = random.uniform(1, 3), options.seed = seed;
+    options.amplitude = random.uniform(0, 0.15);
+    options.frequency = random.uniform(1, 3);
+    options.seed = seed;
     const auto of_edges = [](const TriangleMesh& m) {
       std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
       for (const auto& t : m.triangles)

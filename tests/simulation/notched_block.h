@@ -17,7 +17,9 @@ inline Notched notched_block(const geo::Vec3& size, double spacing, double depth
                              std::uint64_t seed = 1) {
   using namespace geo;
   SampleOptions sampling;
-  sampling.spacing = spacing, sampling.levels = 1, sampling.seed = seed;
+  sampling.spacing = spacing;
+  sampling.levels = 1;
+  sampling.seed = seed;
   const TriangleMesh mesh = make_block(size, 2 * spacing);
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   const int points = std::max(2, static_cast<int>(size.z() / (0.7 * spacing))) + 1;

@@ -24,7 +24,10 @@ Middle middle_of(const Simulation& sim, int part) {
     const double mass = sim.solid().mass(NodeId(i));
     const Vec3 x = sim.body().nodes.position[i] + sim.state().motion.displacement[i],
                v = sim.state().motion.velocity[i];
-    m.mass += mass, m.place += mass * x, m.momentum += mass * v, m.turning += mass * x.cross(v);
+    m.mass += mass;
+    m.place += mass * x;
+    m.momentum += mass * v;
+    m.turning += mass * x.cross(v);
   }
   m.place /= m.mass;
   return m;

@@ -114,7 +114,8 @@ TEST_CASE("cut bodies of two materials keep theirs, and a run taken up goes on w
   RunState wrong = sim.state();
   wrong.body_index.back() = 2;
   CHECK_THROWS_WITH(Simulation(scene, sim.body(), wrong), Catch::Contains("does not belong to this scene"));
-  wrong.body_index.back() = 1, wrong.body_index.pop_back();
+  wrong.body_index.back() = 1;
+  wrong.body_index.pop_back();
   CHECK_THROWS_WITH(Simulation(scene, sim.body(), wrong), Catch::Contains("does not belong to this scene"));
 }
 
@@ -151,7 +152,10 @@ TEST_CASE("surfaces of a hard and a soft body that meet do not go far") {
   // It stands on the other one, dents it, and keeps its own shape.
   double middle = 0, count = 0;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i)
-    if (sim.state().body_index[i] != 0) middle += sim.state().motion.displacement[i].z(), ++count;
+    if (sim.state().body_index[i] != 0) {
+      middle += sim.state().motion.displacement[i].z();
+      ++count;
+    }
   INFO(middle / count);
   CHECK(middle / count < -0.02);
   CHECK(middle / count > -0.3);
@@ -177,7 +181,8 @@ TEST_CASE("bodies pulled alike break where their own strength says", "[fracture]
       sim.advance_frame();
     }
     Simulation again = read_back(scene, kept);
-    again.advance_frame(), again.advance_frame();
+    again.advance_frame();
+    again.advance_frame();
     CHECK(bytes(again) == bytes(sim));
     std::size_t faces[2] = {0, 0};
     const Complex& k = sim.body().surface;

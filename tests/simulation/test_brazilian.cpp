@@ -43,7 +43,9 @@ TEST_CASE("the first crack of a pressed disk runs along the loaded diameter, at 
     const auto c = k.corners(id);
     Vec3 n = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
     if (n.x() < 0) n = -n;
-    normal += n, area += n.norm(), middle += n.norm() * (c[0] + c[1] + c[2]) / 3;
+    normal += n;
+    area += n.norm();
+    middle += n.norm() * (c[0] + c[1] + c[2]) / 3;
     for (const Vec3& p : c) box.add(p);
   }
   REQUIRE(area > 0);

@@ -21,10 +21,15 @@ Scene brittle() {
   s.gravity.setZero();
   s.bodies.resize(1);
   Material& m = s.material;
-  m.young = 1e6, m.poisson = 0.25, m.density = 1000, m.damping = 20;
+  m.young = 1e6;
+  m.poisson = 0.25;
+  m.density = 1000;
+  m.damping = 20;
   s.fracture.on = true;
-  s.fracture.strength = 1e4, s.fracture.variation = 0;
-  s.frame_rate = 200, s.dt = 1.0 / 200;
+  s.fracture.strength = 1e4;
+  s.fracture.variation = 0;
+  s.frame_rate = 200;
+  s.dt = 1.0 / 200;
   return s;
 }
 
@@ -75,8 +80,11 @@ TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fract
   const auto seed = GENERATE(1, 2);
   const double sense = GENERATE(1.0, -1.0), spacing = 0.06, rim = 1.5 * spacing, depth = 0.493, height = 0.507;
   Scene scene = brittle();
-  scene.material.poisson = 0, scene.material.damping = 60;
-  scene.fracture.max_cracks = 0, scene.fracture.start = 0.1, scene.fracture.strength = 1e3;
+  scene.material.poisson = 0;
+  scene.material.damping = 60;
+  scene.fracture.max_cracks = 0;
+  scene.fracture.start = 0.1;
+  scene.fracture.strength = 1e3;
   scene.grips = {{Vec3(-1, -1, -1), Vec3(2, rim, 1), {}, false},
                  {Vec3(-1, 1 - rim, -1), Vec3(2, 2, 1), {}, false},
                  {Vec3(-1, -1, -1), Vec3(rim, 2, 1), {}, false},
@@ -88,7 +96,8 @@ TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fract
                                                           std::atan2(x.y() - height, x.x() - depth)) *
                                         Vec3(0, sense * 2e3, 0));
   state.motion.velocity.assign(n.body.nodes.size(), Vec3::Zero());
-  state.fracture.fronts.push_back(std::move(n.front)), state.fracture.cracks = 1;
+  state.fracture.fronts.push_back(std::move(n.front));
+  state.fracture.cracks = 1;
   Simulation sim(scene, std::move(n.body), std::move(state));
   while (sim.state().fracture.fronts[0].length == 0 && sim.state().frame < 40) sim.advance_frame();
   const GrowingFront& kinked = sim.state().fracture.fronts.at(0);
@@ -98,7 +107,8 @@ TEST_CASE("mode II: a notch in shear kinks within five degrees of 70.5", "[fract
   for (std::size_t i = 0; i < kinked.size(); ++i) {
     if (!kinked.live(i)) continue;
     const Vec3 way = kinked.front.points[i].position - Vec3(depth, height, kinked.front.points[i].position.z());
-    sum += std::atan2(way.y(), way.x()) / degree, ++count;
+    sum += std::atan2(way.y(), way.x()) / degree;
+    ++count;
   }
   INFO("seed " << seed << " sense " << sense << " frame " << sim.state().frame << " points " << count);
   CHECK(sum / count == Approx(-sense * 70.53).margin(5));
@@ -110,7 +120,8 @@ namespace {
 // the scene's seed.
 Simulation stretched_bar(const Scene& scene, double stretch) {
   SampleOptions sampling;
-  sampling.spacing = 0.1, sampling.seed = scene.seed;
+  sampling.spacing = 0.1;
+  sampling.seed = scene.seed;
   const TriangleMesh mesh = make_block({2, 0.5, 0.5}, 0.2);
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   RunState state;
@@ -123,7 +134,8 @@ Simulation stretched_bar(const Scene& scene, double stretch) {
 
 Scene bar_scene(std::uint64_t seed) {
   Scene scene = brittle();
-  scene.fracture.variation = 0.3, scene.seed = scene.fracture.seed = seed;
+  scene.fracture.variation = 0.3;
+  scene.seed = scene.fracture.seed = seed;
   scene.grips = {{Vec3(-1, -1, -1), Vec3(0.15, 2, 2), {}, false}, {Vec3(1.85, -1, -1), Vec3(3, 2, 2), {}, false}};
   scene.fracture.off = {{Vec3(-1, -1, -1), Vec3(0.4, 2, 2)}, {Vec3(1.6, -1, -1), Vec3(3, 2, 2)}};
   return scene;
@@ -156,7 +168,10 @@ TEST_CASE("a brittle bar in tension breaks in two, across the pull, and the same
     CHECK(sim.solid().energy(sim.state().motion.displacement) < 0.7 * energy);
     broken.push_back(crack_vertices(sim.body().surface));
     double lo = 2, hi = 0;
-    for (const Vec3& p : broken.back()) lo = std::min(lo, p.x()), hi = std::max(hi, p.x());
+    for (const Vec3& p : broken.back()) {
+      lo = std::min(lo, p.x());
+      hi = std::max(hi, p.x());
+    }
     CHECK(lo > 0.4 - 0.1);
     CHECK(hi < 1.6 + 0.1);
     CHECK(hi - lo < 0.5);
@@ -187,7 +202,8 @@ TEST_CASE("nothing breaks below the strength, before the start, or where it is o
   Scene scene = bar_scene(5);
   scene.fracture.variation = 0;
   CHECK(begun(scene, 1) == 1);
-  scene.fracture.cracks_per_step = 3, scene.fracture.separation = 3;
+  scene.fracture.cracks_per_step = 3;
+  scene.fracture.separation = 3;
   CHECK(begun(scene, 1) == 3);
   scene.fracture.max_cracks = 2;
   CHECK(begun(scene, 3) == 2);

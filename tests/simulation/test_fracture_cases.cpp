@@ -31,14 +31,20 @@ RandomCase random_case(std::uint64_t seed) {
   s.bodies.resize(1);
   SceneBody& body = s.bodies[0];
   body.sampling.count = 300 + random.below(100);
-  s.material.young = 1e6, s.material.damping = random.uniform(0.0, 40.0), s.material.poisson = random.uniform(0.0, 0.4);
+  s.material.young = 1e6;
+  s.material.damping = random.uniform(0.0, 40.0);
+  s.material.poisson = random.uniform(0.0, 0.4);
   body.spin = 30 * random.direction();
   s.seed = s.fracture.seed = seed;
-  s.frame_rate = 200, s.dt = 1.0 / 200;
+  s.frame_rate = 200;
+  s.dt = 1.0 / 200;
   s.fracture.on = true;
-  s.fracture.strength = random.uniform(3e3, 2e4), s.fracture.variation = random.uniform(0.0, 0.6);
+  s.fracture.strength = random.uniform(3e3, 2e4);
+  s.fracture.variation = random.uniform(0.0, 0.6);
   s.fracture.branching = random.below(3) ? 1.05 : 0;
-  s.fracture.max_cracks = 12, s.fracture.cracks_per_step = 2, s.fracture.separation = random.uniform(1.0, 2.0);
+  s.fracture.max_cracks = 12;
+  s.fracture.cracks_per_step = 2;
+  s.fracture.separation = random.uniform(1.0, 2.0);
   for (int i = 0; i < 9; ++i) c.gradient.data()[i] = random.uniform(-0.02, 0.04);
   return c;
 }
@@ -80,7 +86,9 @@ TEST_CASE("random bodies break and keep every invariant, the same with any threa
       // file.
       if (i + 1 == frames / 2) sim = read_back(c.scene, half);
     }
-    begun += work.fracture.begun, divided += work.fracture.divided, advanced += work.fracture.advanced;
+    begun += work.fracture.begun;
+    divided += work.fracture.divided;
+    advanced += work.fracture.advanced;
     set_threads(1);
     Simulation again = read_back(c.scene, half);
     for (int i = frames / 2; i < frames; ++i) again.advance_frame();

@@ -113,7 +113,8 @@ TEST_CASE("material ahead of a tip is a ligament where its surface is within hal
     Random random(seed);
     TipFrame tip;
     tip.at = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
-    tip.ahead = random.direction(), tip.normal = tip.ahead.unitOrthogonal();
+    tip.ahead = random.direction();
+    tip.normal = tip.ahead.unitOrthogonal();
     double ahead = 1e300;  // to the faces of the cube
     for (int axis = 0; axis < 3; ++axis)
       if (tip.ahead[axis] != 0)

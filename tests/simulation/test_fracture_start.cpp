@@ -74,7 +74,8 @@ TEST_CASE("starts are the nodes with most stress over strength that nothing keep
     const Notched block = notched_block({1, 0.6, 0.3}, 0.1, random.uniform(0.2, 0.5), 0.31, 1 + seed % 3);
     const NodeSet& nodes = block.body.nodes;
     FractureOptions fracture;
-    fracture.strength = 1, fracture.variation = random.below(2) == 0 ? 0 : 0.5,
+    fracture.strength = 1;
+    fracture.variation = random.below(2) == 0 ? 0 : 0.5;
     fracture.separation = random.uniform(0, 4);
     fracture.seed = seed;
     std::vector<std::uint32_t> body_index(nodes.size(), 0);
@@ -92,7 +93,8 @@ TEST_CASE("starts are the nodes with most stress over strength that nothing keep
     const std::size_t limit = random.below(3) == 0 ? random.below(4) : 1000;
     const auto found = find_starts(block.body, stress, fracture, body_index, limit);
     CHECK(found.size() <= limit);
-    starts += found.size(), limited += found.size() == limit;
+    starts += found.size();
+    limited += found.size() == limit;
     const double diagonal = block.body.surface.extent().diagonal();
     const auto ratio = [&](std::size_t i) {
       const Strength& own = fracture.at_node(body_index, i);

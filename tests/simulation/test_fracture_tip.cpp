@@ -35,7 +35,8 @@ TEST_CASE("stress intensities imposed on nodes are told exactly, and where the c
   const auto seed = GENERATE(1, 2, 3);
   const Notched n = notched_block({1, 1, 0.4}, 0.08, depth, height, static_cast<std::uint64_t>(seed));
   Material material;
-  material.young = 1e9, material.poisson = 0.3;
+  material.young = 1e9;
+  material.poisson = 0.3;
   const Mat3 none = Mat3::Zero(), turned = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   struct Case {
     Vec3 k;
@@ -62,7 +63,8 @@ TEST_CASE("stress intensities imposed on nodes are told exactly, and where the c
 TEST_CASE("a flaw that the nodes do not see is pulled apart across the largest principal stress", "[fracture]") {
   const Notched n = notched_block({1, 1, 0.4}, 0.08, 0.1, 0.507);
   Material material;
-  material.young = 1e6, material.poisson = 0;
+  material.young = 1e6;
+  material.poisson = 0;
   for (const double angle : {0.0, 25.0, -60.0}) {
     const Vec3 pull(-std::sin(angle * degree), std::cos(angle * degree), 0);
     const auto u = moved(n.body, material, Vec3::Zero(), 1e-4 * pull * pull.transpose(), 0.1, 0.507, Mat3::Identity());
@@ -74,7 +76,8 @@ TEST_CASE("a flaw that the nodes do not see is pulled apart across the largest p
 
 TEST_CASE("displacements and stresses of the modes belong together", "[fracture]") {
   Material m;
-  m.young = 3e5, m.poisson = 0.27;
+  m.young = 3e5;
+  m.poisson = 0.27;
   for (int mode = 0; mode < 3; ++mode)
     for (const double angle : {-2.0, 0.4, 1.9}) {
       const double r = 0.3, h = 1e-6;

@@ -66,7 +66,9 @@ struct Handled {
 Handled handled(bool implicit) {
   Scene scene = cube_scene();
   scene.implicit = implicit;
-  scene.ground = true, scene.ground_point = {0, 0, -0.1}, scene.self_contact = implicit;
+  scene.ground = true;
+  scene.ground_point = {0, 0, -0.1};
+  scene.self_contact = implicit;
   Simulation run(scene, make_block({1, 1, 1}, 0.25));
   const auto frames = [&](int n) {
     for (int i = 0; i < n; ++i) run.advance_frame();
@@ -85,22 +87,29 @@ Handled handled(bool implicit) {
     run.extend_pull(p, 1, {0.5, 0.5 + 0.1 * i, 1 + 0.05 * i});
     if (i == 2) {
       SceneChange change;
-      change.young = 2e4, change.gravity = Vec3(0.3, 0, -3), change.friction = 0.2, change.damping = 1.5;
+      change.young = 2e4;
+      change.gravity = Vec3(0.3, 0, -3);
+      change.friction = 0.2;
+      change.damping = 1.5;
       run.change(change);
       Grip pin;
-      pin.lo = {-1, -1, -1}, pin.hi = {0.3, 0.3, 0.3};
+      pin.lo = {-1, -1, -1};
+      pin.hi = {0.3, 0.3, 0.3};
       run.add_grip(pin);
     }
     frames(1);
   }
   run.end_grip(0);
   SceneChange change;
-  change.accuracy = 5e-3, change.dt = 0.025;
+  change.accuracy = 5e-3;
+  change.dt = 0.025;
   run.change(change);
   frames(3);
   Scene recorded = scene;
-  recorded.blades = run.scene().blades, recorded.grips = run.scene().grips;
-  recorded.pulls = run.scene().pulls, recorded.changes = run.scene().changes;
+  recorded.blades = run.scene().blades;
+  recorded.grips = run.scene().grips;
+  recorded.pulls = run.scene().pulls;
+  recorded.changes = run.scene().changes;
   return {recorded, bytes(run)};
 }
 
@@ -145,7 +154,8 @@ TEST_CASE("a pin holds its nodes where they are, from its begin to its end", "[h
   Simulation run(cube_scene(), make_block({1, 1, 1}, 0.25));
   for (int i = 0; i < 3; ++i) run.advance_frame();
   Grip pin;
-  pin.lo = {-1, -1, 0.6}, pin.hi = {2, 2, 2};
+  pin.lo = {-1, -1, 0.6};
+  pin.hi = {2, 2, 2};
   const std::size_t grip = run.add_grip(pin);
   const auto held = [&](std::size_t i) { return run.body().nodes.position[i].z() >= 0.6; };
   const std::vector<Vec3> before = run.state().motion.displacement;
@@ -165,7 +175,8 @@ TEST_CASE("values change at their time", "[hands]") {
   Scene scene = cube_scene();
   scene.material.damping = 0;
   SceneChange change;
-  change.time = 0.25, change.gravity = Vec3(0, 0, 2);
+  change.time = 0.25;
+  change.gravity = Vec3(0, 0, 2);
   scene.changes = {change};
   Simulation run(scene, make_block({1, 1, 1}, 0.25));
   for (int i = 0; i < 5; ++i) run.advance_frame();
@@ -174,9 +185,11 @@ TEST_CASE("values change at their time", "[hands]") {
   CHECK(std::abs(run.solid().momentum(run.state().motion).z()) < 1e-6);
   CHECK(run.scene().gravity == Vec3(0, 0, 2));
   // A body's own stiffness keeps its ratio to the scene's.
-  scene.bodies[0].material = scene.material, scene.bodies[0].material->young = 9e4;
+  scene.bodies[0].material = scene.material;
+  scene.bodies[0].material->young = 9e4;
   SceneChanges changes(scene);
-  scene.changes[0].young = 6e4, scene.changes[0].dt = 0.01;
+  scene.changes[0].young = 6e4;
+  scene.changes[0].dt = 0.01;
   CHECK_FALSE(changes.apply(scene, 0.2));
   CHECK(changes.apply(scene, 0.25));
   CHECK_FALSE(changes.apply(scene, 0.3));
@@ -222,10 +235,14 @@ TEST_CASE("a grip ends once, and blades and pulls with one key do not exist", "[
   const std::size_t grip = run.add_grip({.lo = {-1, -1, 0.6}, .hi = {2, 2, 2}, .motion = {}});
   run.end_grip(grip);
   Blade wedge{.name = "b", .points = {{0, -1, 0}, {0, 2, 0}}, .motion = {}};
-  wedge.back = {0, 0, 0.5}, wedge.thickness = 0.3;
+  wedge.back = {0, 0, 0.5};
+  wedge.thickness = 0.3;
   run.extend_blade(run.add_blade(wedge), 0, at({0.5, 0, 0.5}, 0));
   run.extend_pull(run.add_pull({.point = {0.5, 0.5, 0.98}, .motion = {}}), 0, {0.5, 0.5, 3});
-  for (int i = 0; i < 3; ++i) run.advance_frame(), other.advance_frame();
+  for (int i = 0; i < 3; ++i) {
+    run.advance_frame();
+    other.advance_frame();
+  }
   run.end_grip(grip);
   CHECK(run.scene().grips[grip].until == 0);
   CHECK(run.state().motion.displacement == other.state().motion.displacement);

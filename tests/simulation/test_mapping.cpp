@@ -54,7 +54,8 @@ struct Deformed {
   static Body block() {
     const TriangleMesh mesh = make_block({1, 1, 2}, 0.2);
     SampleOptions sampling;
-    sampling.spacing = 0.2, sampling.levels = 1;
+    sampling.spacing = 0.2;
+    sampling.levels = 1;
     return build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
   }
   // Eq. 1 inside.

@@ -30,10 +30,12 @@ Middle middle_of(const Simulation& sim) {
   Middle m;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
     const double mass = sim.solid().mass(NodeId(i));
-    m.mass += mass, m.place += mass * (sim.body().nodes.position[i] + sim.state().motion.displacement[i]),
-        m.velocity += mass * sim.state().motion.velocity[i];
+    m.mass += mass;
+    m.place += mass * (sim.body().nodes.position[i] + sim.state().motion.displacement[i]);
+    m.velocity += mass * sim.state().motion.velocity[i];
   }
-  m.place /= m.mass, m.velocity /= m.mass;
+  m.place /= m.mass;
+  m.velocity /= m.mass;
   return m;
 }
 
@@ -145,7 +147,8 @@ TEST_CASE("a cut body on obstacles: the same with any threads, and after a check
       Simulation other = read_back(scene, bytes(kept));
       Checkpoint c = read_checkpoint(KerfFile(Input(bytes(kept), "checkpoint")));
       kept.restore(std::move(c.body), std::move(c.state));
-      other.advance_frame(), kept.advance_frame();
+      other.advance_frame();
+      kept.advance_frame();
       CHECK(bytes(kept) == bytes(other));
     }
     CHECK(kept.body().surface.crack_count() == 1);

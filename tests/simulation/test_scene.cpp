@@ -44,7 +44,8 @@ TEST_CASE("strength: noise is bounded and repeatable, boxes exclude fracture, sp
     const Vec3 x(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     const double factor = strength_factor(strength, 3, 2, x);
     REQUIRE(factor == strength_factor(strength, 3, 2, x));
-    least = std::min(least, factor), largest = std::max(largest, factor);
+    least = std::min(least, factor);
+    largest = std::max(largest, factor);
   }
   CHECK(least >= 0.05);
   CHECK(least < 0.9);
@@ -62,7 +63,9 @@ TEST_CASE("strength: noise is bounded and repeatable, boxes exclude fracture, sp
   CHECK(fracture.at_node({0, 1, 1}, 2).toughness == 4);
 
   Material material;
-  material.young = 2.5e9, material.poisson = 0.25, material.density = 1000;  // μ = 1e9, c_s = 1000 m/s
+  material.young = 2.5e9;
+  material.poisson = 0.25;
+  material.density = 1000;  // μ = 1e9, c_s = 1000 m/s
   CHECK(rayleigh_speed(material) == Approx(1000 * (0.862 + 1.14 * 0.25) / 1.25));
   // The mean of K / √(2πr) over 0 < r < h, by the midpoint rule in √r.
   const double h = 0.3;
@@ -78,13 +81,16 @@ TEST_CASE("grips hold the nodes in their boxes, move them, and release them", "[
   NodeSet nodes;
   nodes.position = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 0, 0}};
   std::vector<Grip> grips(2);
-  grips[0].lo = {-0.5, -1, -1}, grips[0].hi = {1.5, 1, 1};
+  grips[0].lo = {-0.5, -1, -1};
+  grips[0].hi = {1.5, 1, 1};
   grips[0].motion.keys = {{0, {0, 0, 0}, {0, 0, 1}, 0}, {1, {0, 0, 2}, {0, 0, 1}, 90}};
   grips[0].release = true;
-  grips[1].lo = {0.5, -1, -1}, grips[1].hi = {2.5, 1, 1};  // node 1 is in both: the first holds it
+  grips[1].lo = {0.5, -1, -1};
+  grips[1].hi = {2.5, 1, 1};  // node 1 is in both: the first holds it
   const GrippedNodes gripped(grips, nodes);
   State state;
-  state.displacement.assign(4, Vec3(7, 7, 7)), state.velocity.assign(4, Vec3(8, 8, 8));
+  state.displacement.assign(4, Vec3(7, 7, 7));
+  state.velocity.assign(4, Vec3(8, 8, 8));
   std::vector<std::uint8_t> fixed(4, 1);
   gripped.place(grips, nodes, 1, fixed, state);
   CHECK(fixed == std::vector<std::uint8_t>{1, 1, 1, 0});

@@ -25,7 +25,10 @@ struct Row {
       body.name = std::string(1, static_cast<char>('a' + b));
       body.spacing_percent = random.uniform(8, 12);
       if (random.below(2) == 0) body.sampling.spacing = random.uniform(0.15, 0.2);
-      if (random.below(2) == 0) body.material = scene.material, body.material->density = 2000;
+      if (random.below(2) == 0) {
+        body.material = scene.material;
+        body.material->density = 2000;
+      }
       meshes.push_back(random.below(2) == 0 ? make_sphere(4) : make_block({1, 0.8, 0.6}, 0.3));
       body.place.position = {3.0 * b, 0, 0};
       scene.bodies.push_back(body);

@@ -60,7 +60,8 @@ TEST_CASE("a block that is cut while it is pressed together and dropped has no c
   // A resumed run equals one that was not stopped.
   Simulation taken_up(scene, sim.body(), sim.state());
   CHECK(taken_up.surface().vertices == sim.surface().vertices);
-  taken_up.advance_frame(), sim.advance_frame();
+  taken_up.advance_frame();
+  sim.advance_frame();
   CHECK(taken_up.surface().vertices == sim.surface().vertices);
 }
 

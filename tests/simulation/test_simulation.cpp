@@ -85,7 +85,9 @@ TEST_CASE("a falling cube is halved and both halves go on falling as one") {
   double mass = 0, z = 0, rest = 0;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i) {
     const double m = sim.solid().mass(NodeId(i));
-    mass += m, z += m * state.motion.velocity[i].z(), rest += sim.body().nodes.volume[i];
+    mass += m;
+    z += m * state.motion.velocity[i].z();
+    rest += sim.body().nodes.volume[i];
   }
   CHECK(rest == Approx(1).epsilon(1e-12));
   CHECK(z / mass == Approx(-2 * 0.3).epsilon(1e-6));
@@ -107,7 +109,8 @@ TEST_CASE("a solid is up to date whenever it is asked for, and a run does not de
   Simulation asked(scene, make_block({1, 1, 1}, 0.2)), other(scene, make_block({1, 1, 1}, 0.2));
   std::size_t cuts = 0;
   for (int i = 0; i < scene.frames; ++i) {
-    cuts += asked.advance_frame().split.crack.new_crack_faces > 0, other.advance_frame();
+    cuts += asked.advance_frame().split.crack.new_crack_faces > 0;
+    other.advance_frame();
     const std::vector<Vec3>& u = asked.state().motion.displacement;
     const Solid fresh(asked.body(), asked.solid().materials());
     CHECK(asked.solid().point_count() == fresh.point_count());
@@ -159,7 +162,8 @@ TEST_CASE("a grip carries the nodes that it holds, and lets go") {
       "keys = [[0, 0, 0, 0, 0, 0, 1, 0], [0.2, 0, 0, 0.1, 0, 0, 1, 0]]\nrelease = true\n",
       "s.toml");
   Simulation sim(scene, make_block({1, 1, 1}, 0.25));
-  sim.advance_frame(), sim.advance_frame();
+  sim.advance_frame();
+  sim.advance_frame();
   std::size_t held = 0;
   for (std::size_t i = 0; i < sim.body().nodes.size(); ++i)
     if (sim.body().nodes.position[i].z() > 0.8) {

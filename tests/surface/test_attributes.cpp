@@ -26,7 +26,9 @@ TriangleMesh dressed(TriangleMesh mesh) {
   a.group_names = {"skin", "lid", "stripe"};
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     a.group.push_back(static_cast<std::int32_t>(t % 3));
-    a.uv.emplace_back(), a.normal.emplace_back(), a.color.emplace_back();
+    a.uv.emplace_back();
+    a.normal.emplace_back();
+    a.color.emplace_back();
     for (int k = 0; k < 3; ++k) {
       const auto v = mesh.triangles[t][k];
       a.uv[t][k] = affine_uv(mesh.vertices[v]);
@@ -128,7 +130,9 @@ TEST_CASE("affine attributes of the skin stay affine under any cut, and what is 
     TriangleMesh surface = complex.two_sided();
     transfer_attributes(model, surface);
     const Seen seen = require_carried(model, surface);
-    all.corners_kept += seen.corners_kept, all.corners_mixed += seen.corners_mixed, all.crack += seen.crack;
+    all.corners_kept += seen.corners_kept;
+    all.corners_mixed += seen.corners_mixed;
+    all.crack += seen.crack;
   }
   CHECK(all.corners_kept > 1000);
   CHECK(all.corners_mixed > 1000);
@@ -189,8 +193,13 @@ TEST_CASE(
       for (std::size_t t = 0; t < copy.size(); ++t)
         if ((once.patch[t] < 0) == negative) rows.push_back(copy[t]);
   };
-  order(sorted.triangles), order(sorted.patch), order(sorted.source), order(sorted.attributes.uv),
-      order(sorted.attributes.normal), order(sorted.attributes.color), order(sorted.attributes.group);
+  order(sorted.triangles);
+  order(sorted.patch);
+  order(sorted.source);
+  order(sorted.attributes.uv);
+  order(sorted.attributes.normal);
+  order(sorted.attributes.color);
+  order(sorted.attributes.group);
   TriangleMesh again = Complex::from_two_sided(sorted).two_sided();
   transfer_attributes(sorted, again);
   for (std::size_t t = 0; t < again.triangles.size(); ++t) {

@@ -53,7 +53,8 @@ TEST_CASE("Pieces and bonds account for all of a cut body", "[chunks]") {
       const TriangleMesh& mesh = chunk.mesh;
       CHECK(mesh.site.empty());
       CHECK(std::abs(signed_volume(mesh) - chunk.volume) <= 1e-12);
-      volume += chunk.volume, moment += chunk.volume * chunk.centroid;
+      volume += chunk.volume;
+      moment += chunk.volume * chunk.centroid;
       REQUIRE(mesh.attributes.group.size() == mesh.triangles.size());
       REQUIRE(mesh.attributes.uv.size() == mesh.triangles.size());
       for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -48,7 +48,9 @@ TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back
     const int axis = variant / 2;
     const auto corner = [&](double a, double b, double c) {
       double p[3];
-      p[axis] = a, p[(axis + 1) % 3] = b, p[(axis + 2) % 3] = c;
+      p[axis] = a;
+      p[(axis + 1) % 3] = b;
+      p[(axis + 2) % 3] = c;
       return id(p[0], p[1], p[2]);
     };
     const double s = variant % 2;

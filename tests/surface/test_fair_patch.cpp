@@ -57,7 +57,8 @@ void check_disk(const Hole& hole, const FairPatch& patch) {
   for (const auto& [edge, times] : runs) {
     CHECK(times == 1);
     const bool open = runs.count({edge.second, edge.first}) == 0;
-    edges += open || edge.first < edge.second, border += open;
+    edges += open || edge.first < edge.second;
+    border += open;
     if (open) CHECK(edge.second == (edge.first + 1) % hole.rim.size());
   }
   CHECK(border == hole.rim.size());

@@ -91,7 +91,10 @@ TEST_CASE("Small pieces join until none with a bond is left", "[hierarchy]") {
     }
     std::set<std::uint32_t> bonded;
     for (const Bond& bond : graph.bonds)
-      if (group[bond.a] != group[bond.b]) bonded.insert(group[bond.a]), bonded.insert(group[bond.b]);
+      if (group[bond.a] != group[bond.b]) {
+        bonded.insert(group[bond.a]);
+        bonded.insert(group[bond.b]);
+      }
     for (const auto g : bonded) CHECK(volume[g] >= least);
     // Only small groups join: a group of several has at most one member that is not small.
     for (std::uint32_t p = 0; p < group.size(); ++p)

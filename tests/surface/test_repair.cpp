@@ -62,9 +62,10 @@ TEST_CASE("triangles missing, turned, twice, and with a vertex twice, are mended
   TriangleMesh mesh = ball;
   drop_row(mesh, random.below(mesh.triangles.size()));
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (random.below(5) == 0)
-      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]),
-          std::swap(mesh.attributes.uv[t][1], mesh.attributes.uv[t][2]);
+    if (random.below(5) == 0) {
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+      std::swap(mesh.attributes.uv[t][1], mesh.attributes.uv[t][2]);
+    }
   const auto twice = static_cast<std::uint32_t>(random.below(mesh.triangles.size()));
   const auto again = [&](const Triangle& t) {
     mesh.triangles.push_back(t);
@@ -219,7 +220,10 @@ TEST_CASE("triangles reported as turned are those whose orientation differs in t
     const double share = random.uniform();  // above a half, the component is turned the wrong way first
     std::size_t turned = 0;
     for (Triangle& t : mesh.triangles)
-      if (random.uniform() < share) std::swap(t[1], t[2]), ++turned;
+      if (random.uniform() < share) {
+        std::swap(t[1], t[2]);
+        ++turned;
+      }
     CHECK(repair(mesh).flipped_triangles == turned);
     CHECK(signed_volume(mesh) == Approx(signed_volume(ball)));
   }

@@ -125,7 +125,10 @@ Mesh octant(Mesh piece, const Kernel::Point_3& middle, unsigned which) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::cerr << "usage: cgal IN FOLDER\n", 2;
+  if (argc != 3) {
+    std::cerr << "usage: cgal IN FOLDER\n";
+    return 2;
+  }
   const std::string folder = std::string(argv[2]) + "/";
   try {
     Mesh solid = solid_of(read(argv[1]));

@@ -87,15 +87,18 @@ void measure_and_check(Fracture& fracture, double volume) {
   double sum = 0, compensation = 0;  // Kahan summation
   for (std::size_t p = 0; p < fracture.pieces.size(); ++p) {
     Piece& piece = fracture.pieces[p];
-    mesh.vertices.swap(piece.vertices), mesh.triangles.swap(piece.faces);
+    mesh.vertices.swap(piece.vertices);
+    mesh.triangles.swap(piece.faces);
     const auto report = geo::check_surface(mesh, false);
     if (!report.good()) throw geo::GeometryError(name_of(p) + ": " + report.first_problem);
     piece.volume = geo::signed_volume(mesh);
     piece.centroid = geo::mass_properties(mesh).centroid;
-    mesh.vertices.swap(piece.vertices), mesh.triangles.swap(piece.faces);
+    mesh.vertices.swap(piece.vertices);
+    mesh.triangles.swap(piece.faces);
     if (!(piece.volume > 0)) throw geo::GeometryError(name_of(p) + " has no volume");
     const double y = piece.volume - compensation, t = sum + y;
-    compensation = (t - sum) - y, sum = t;
+    compensation = (t - sum) - y;
+    sum = t;
   }
   if (!(std::abs(sum - volume) <= volume_tolerance * volume))
     throw geo::GeometryError("volumes of pieces sum to " + tool::number(sum) + ", not to " + tool::number(volume));

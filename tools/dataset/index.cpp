@@ -17,13 +17,19 @@ using Json = nlohmann::ordered_json;
 std::string text_of(const std::vector<ModelFile>& models, const Settings& s) {
   Json text{{"format", 2}, {"patterns", Json::array()}};
   for (const auto pattern : s.patterns) text["patterns"].push_back(geo::pattern_names[std::size_t(pattern)]);
-  text["seed"] = s.first_seed, text["seeds"] = s.seeds;
-  text["pieces"] = {s.pieces.low, s.pieces.high}, text["jagged"] = {s.jagged.low, s.jagged.high};
-  text["bumps"] = s.bumps, text["attempts"] = s.attempts;
-  text["rotate"] = s.rotate, text["repair"] = s.repair, text["single"] = s.single;
+  text["seed"] = s.first_seed;
+  text["seeds"] = s.seeds;
+  text["pieces"] = {s.pieces.low, s.pieces.high};
+  text["jagged"] = {s.jagged.low, s.jagged.high};
+  text["bumps"] = s.bumps;
+  text["attempts"] = s.attempts;
+  text["rotate"] = s.rotate;
+  text["repair"] = s.repair;
+  text["single"] = s.single;
   text["layout"] = s.folders ? "folders" : "npz";
   if (!s.folders) text["per_shard"] = s.per_shard;
-  text["split"] = s.split, text["models"] = Json::array();
+  text["split"] = s.split;
+  text["models"] = Json::array();
   const std::vector<std::size_t> sets = sets_of(models, s);
   for (std::size_t m = 0; m < models.size(); ++m)
     text["models"].push_back({{"name", models[m].name}, {"set", set_names[sets[m]]}});
@@ -45,7 +51,8 @@ struct Sum {
       const auto record = Json::parse(geo::read_all(path));
       for (const auto& entry : record.at("fractures")) {
         ++fractures;
-        pieces += entry.at("pieces").get<std::size_t>(), faces += entry.at("faces").get<std::size_t>();
+        pieces += entry.at("pieces").get<std::size_t>();
+        faces += entry.at("faces").get<std::size_t>();
       }
       const std::string name = record.at("model").get<std::string>() + "\t" + record.at("pattern").get<std::string>();
       failed += record.at("failed").size();

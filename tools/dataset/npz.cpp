@@ -53,19 +53,32 @@ void NpzWriter::add(const std::string& name, const std::string& type, const std:
   // From "version needed" to "extra length"; sizes and place are in a 64-bit extra field of the
   // directory alone.
   const auto common = [&](std::string& to) {
-    put(to, 45, 2), put(to, 0, 2), put(to, 8, 2), put(to, 0, 2), put(to, 1 << 5 | 1, 2);  // 1 January 1980
-    put(to, crc, 4), put(to, packed.size(), 4), put(to, size, 4), put(to, name.size() + 4, 2);
+    put(to, 45, 2);
+    put(to, 0, 2);
+    put(to, 8, 2);
+    put(to, 0, 2);
+    put(to, 1 << 5 | 1, 2);  // 1 January 1980
+    put(to, crc, 4);
+    put(to, packed.size(), 4);
+    put(to, size, 4);
+    put(to, name.size() + 4, 2);
   };
   std::string local;
   put(local, 0x04034b50, 4);
   common(local);
   put(local, 0, 2);
   local += name + ".npy";
-  put(directory_, 0x02014b50, 4), put(directory_, 45, 2);
+  put(directory_, 0x02014b50, 4);
+  put(directory_, 45, 2);
   common(directory_);
-  put(directory_, 12, 2), put(directory_, 0, 6), put(directory_, 0, 4), put(directory_, 0xffffffff, 4);
+  put(directory_, 12, 2);
+  put(directory_, 0, 6);
+  put(directory_, 0, 4);
+  put(directory_, 0xffffffff, 4);
   directory_ += name + ".npy";
-  put(directory_, 1, 2), put(directory_, 8, 2), put(directory_, at_, 8);
+  put(directory_, 1, 2);
+  put(directory_, 8, 2);
+  put(directory_, at_, 8);
   out_ << local << packed;
   at_ += local.size() + packed.size();
   ++entries_;
@@ -73,11 +86,26 @@ void NpzWriter::add(const std::string& name, const std::string& type, const std:
 
 void NpzWriter::finish() {
   std::string end;
-  put(end, 0x06064b50, 4), put(end, 44, 8), put(end, 45, 2), put(end, 45, 2), put(end, 0, 8);
-  put(end, entries_, 8), put(end, entries_, 8), put(end, directory_.size(), 8), put(end, at_, 8);
-  put(end, 0x07064b50, 4), put(end, 0, 4), put(end, at_ + directory_.size(), 8), put(end, 1, 4);
-  put(end, 0x06054b50, 4), put(end, 0, 4), put(end, 0xffff, 2), put(end, 0xffff, 2);
-  put(end, 0xffffffff, 4), put(end, 0xffffffff, 4), put(end, 0, 2);
+  put(end, 0x06064b50, 4);
+  put(end, 44, 8);
+  put(end, 45, 2);
+  put(end, 45, 2);
+  put(end, 0, 8);
+  put(end, entries_, 8);
+  put(end, entries_, 8);
+  put(end, directory_.size(), 8);
+  put(end, at_, 8);
+  put(end, 0x07064b50, 4);
+  put(end, 0, 4);
+  put(end, at_ + directory_.size(), 8);
+  put(end, 1, 4);
+  put(end, 0x06054b50, 4);
+  put(end, 0, 4);
+  put(end, 0xffff, 2);
+  put(end, 0xffff, 2);
+  put(end, 0xffffffff, 4);
+  put(end, 0xffffffff, 4);
+  put(end, 0, 2);
   out_ << directory_ << end;
 }
 

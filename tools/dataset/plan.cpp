@@ -78,7 +78,8 @@ std::vector<Shard> plan(const std::vector<ModelFile>& models, const Settings& s)
           const std::string stem = std::string(set_names[sets[m]]) + "/" + models[m].name + "-" +
                                    geo::pattern_names[static_cast<std::size_t>(pattern)] + "-" +
                                    padded(shard.first_seed, digits);
-          shard.data = stem + ".npz", shard.record = stem + ".json";
+          shard.data = stem + ".npz";
+          shard.record = stem + ".json";
         }
         shards.push_back(std::move(shard));
       }

@@ -54,8 +54,10 @@ Recipe recipe_of(const Settings& s, geo::Pattern pattern, std::uint64_t seed) {
 geo::ScoreOptions score_options(const Recipe& r) {
   geo::ScoreOptions o;
   o.pattern.pattern = r.pattern;
-  o.pieces = r.pieces, o.attempts = r.attempts;
-  o.jagged.amplitude = r.jagged, o.jagged.frequency = r.bumps;
+  o.pieces = r.pieces;
+  o.attempts = r.attempts;
+  o.jagged.amplitude = r.jagged;
+  o.jagged.frequency = r.bumps;
   o.pattern.seed = o.jagged.seed = r.seed;
   return o;
 }

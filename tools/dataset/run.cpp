@@ -42,8 +42,10 @@ class Making {
       const auto count = static_cast<std::size_t>(shards_[row].count);
       if (fs::exists(at(shards_[row].record)))
         totals_.found += count;
-      else
-        missing.push_back(row), total_ += count;
+      else {
+        missing.push_back(row);
+        total_ += count;
+      }
     }
     for (std::size_t begin = 0; begin < missing.size();) {
       std::size_t end = begin;
@@ -104,7 +106,8 @@ class Making {
       const Shard& shard = shards_[rows[i]];
       outcomes[i].resize(static_cast<std::size_t>(shard.count));
       for (std::size_t k = 0; k < outcomes[i].size(); ++k) {
-        outcomes[i][k].seed = shard.first_seed + k, outcomes[i][k].why = refused;
+        outcomes[i][k].seed = shard.first_seed + k;
+        outcomes[i][k].why = refused;
         jobs.push_back({i, k});
       }
     }
@@ -187,7 +190,8 @@ Totals run(const std::string& folder, const std::vector<ModelFile>& models, cons
     const auto shards = plan(models, settings);
     Totals totals = Making(folder, models, settings, shards, progress).run(part);
     totals.complete = finish_folder(folder, models, settings, shards, totals.notes);
-    totals.seconds = watch.lap(), totals.cpu_seconds = cpu_now() - cpu;
+    totals.seconds = watch.lap();
+    totals.cpu_seconds = cpu_now() - cpu;
     return totals;
   } catch (const fs::filesystem_error& e) {
     throw geo::OutputError(e.path1().string() + ": cannot be made (" + e.code().message() + ")");

@@ -38,8 +38,11 @@ struct Arrays {
       for (const auto& t : p.faces) append(faces, t);
       label.insert(label.end(), p.label.begin(), p.label.end());
       append(source, p.source);
-      piece_vertices.push_back(std::ssize(vertices) / 3), piece_faces.push_back(std::ssize(label));
-      volume.push_back(p.volume), append(centroid, p.centroid), append(translation, p.translation);
+      piece_vertices.push_back(std::ssize(vertices) / 3);
+      piece_faces.push_back(std::ssize(label));
+      volume.push_back(p.volume);
+      append(centroid, p.centroid);
+      append(translation, p.translation);
       rotation.insert(rotation.end(), p.rotation.begin(), p.rotation.end());
     }
     for (std::size_t k = 0; k < fracture.bonds.size(); ++k) {
@@ -47,9 +50,12 @@ struct Arrays {
       append(bond, std::array{b.a, b.b});
       for (const auto& pair : fracture.walls[k]) append(wall_faces, pair);
       bond_walls.push_back(std::ssize(wall_faces) / 2);
-      area.push_back(b.area), append(normal, b.normal), append(bond_centroid, b.centroid);
+      area.push_back(b.area);
+      append(normal, b.normal);
+      append(bond_centroid, b.centroid);
     }
-    fracture_pieces.push_back(std::ssize(volume)), fracture_bonds.push_back(std::ssize(area));
+    fracture_pieces.push_back(std::ssize(volume));
+    fracture_bonds.push_back(std::ssize(area));
   }
 };
 
@@ -94,19 +100,29 @@ void write_archive(std::ostream& out, const std::vector<Outcome>& outcomes, bool
   const auto add = [&]<class T>(const char* name, const std::vector<T>& values, std::uint64_t columns = 1) {
     npz.add(name, std::span<const T>(values), columns);
   };
-  add("seed", a.seed), add("jagged", a.jagged);
-  add("fracture_pieces", a.fracture_pieces), add("fracture_bonds", a.fracture_bonds);
-  add("piece_vertices", a.piece_vertices), add("piece_faces", a.piece_faces);
-  add("piece_volume", a.volume), add("piece_centroid", a.centroid, 3);
-  add("piece_rotation", a.rotation, 4), add("piece_translation", a.translation, 3);
+  add("seed", a.seed);
+  add("jagged", a.jagged);
+  add("fracture_pieces", a.fracture_pieces);
+  add("fracture_bonds", a.fracture_bonds);
+  add("piece_vertices", a.piece_vertices);
+  add("piece_faces", a.piece_faces);
+  add("piece_volume", a.volume);
+  add("piece_centroid", a.centroid, 3);
+  add("piece_rotation", a.rotation, 4);
+  add("piece_translation", a.translation, 3);
   if (single && fits_single(a.vertices))
     add("vertices", std::vector<float>(a.vertices.begin(), a.vertices.end()), 3);
   else
     add("vertices", a.vertices, 3);
-  add("faces", a.faces, 3), add("face_label", a.label), add("face_source", a.source);
-  add("bond_pieces", a.bond, 2), add("bond_area", a.area);
-  add("bond_normal", a.normal, 3), add("bond_centroid", a.bond_centroid, 3);
-  add("bond_walls", a.bond_walls), add("wall_faces", a.wall_faces, 2);
+  add("faces", a.faces, 3);
+  add("face_label", a.label);
+  add("face_source", a.source);
+  add("bond_pieces", a.bond, 2);
+  add("bond_area", a.area);
+  add("bond_normal", a.normal, 3);
+  add("bond_centroid", a.bond_centroid, 3);
+  add("bond_walls", a.bond_walls);
+  add("wall_faces", a.wall_faces, 2);
   npz.finish();
 }
 
@@ -117,8 +133,10 @@ void write_folder(const std::string& folder, const Fracture& fracture) {
   for (std::size_t p = 0; p < fracture.pieces.size(); ++p) {
     const Piece& piece = fracture.pieces[p];
     geo::TriangleMesh mesh;
-    mesh.vertices = piece.vertices, mesh.triangles = piece.faces;
-    mesh.patch = piece.label, mesh.source = piece.source;
+    mesh.vertices = piece.vertices;
+    mesh.triangles = piece.faces;
+    mesh.patch = piece.label;
+    mesh.source = piece.source;
     paths.push_back(folder + "/piece_" + std::to_string(p) + ".ply");
     geo::write_all(
         paths.back(), [&](std::ostream& out) { geo::write_ply(out, mesh, {}, "kerf-dataset"); }, geo::Sync::by_system);
@@ -129,7 +147,8 @@ void write_folder(const std::string& folder, const Fracture& fracture) {
 void write_record(std::ostream& out, const Shard& shard, const std::vector<Outcome>& outcomes, const RecordOf& of) {
   Json record{{"model", of.model}, {"set", of.set}, {"pattern", geo::pattern_names[std::size_t(shard.pattern)]}};
   if (!of.refused.empty()) record["refused"] = of.refused;
-  record["fractures"] = Json::array(), record["failed"] = Json::array();
+  record["fractures"] = Json::array();
+  record["failed"] = Json::array();
   for (const auto& [seed, fracture, why] : outcomes) {
     if (!fracture) {
       record["failed"].push_back({{"seed", seed}, {"why", why}});

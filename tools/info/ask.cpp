@@ -134,8 +134,10 @@ void ask_vertex(const geo::TriangleMesh& mesh, std::size_t v, Report& report) {
   report.add("position", place(mesh.vertices[v]));
   report.add("triangles", numbers(triangles));
   report.add("patches", numbers(patches));
-  if (mesh.two_sided())
-    report.add("site", static_cast<std::size_t>(mesh.site[v])), report.add("copies", numbers(copies));
+  if (mesh.two_sided()) {
+    report.add("site", static_cast<std::size_t>(mesh.site[v]));
+    report.add("copies", numbers(copies));
+  }
 }
 
 }  // namespace info

@@ -36,7 +36,8 @@ std::string twins(const geo::NodeSet& nodes) {
 // touch, cross and have no area.
 std::string check_frame(const std::string& path) {
   geo::TriangleMesh mesh = geo::read_surface(path).mesh;
-  mesh.patch.clear(), mesh.site.clear();
+  mesh.patch.clear();
+  mesh.site.clear();
   const geo::SurfaceReport report = geo::check_surface(mesh, false);
   if (report.closed && report.manifold && report.oriented) return {};
   return fs::path(path).filename().string() + ": " + report.first_problem;
@@ -54,7 +55,10 @@ std::string report_nodes(const geo::NodeSet& nodes, const ReportOptions& options
   report.add_number("spacing_min", *lo);
   report.add_number("spacing_max", *hi);
   report.add_number("volume", volume);
-  if (options.histograms) report.add_histogram("radii", nodes.radius), report.add_histogram("spacings", nodes.spacing);
+  if (options.histograms) {
+    report.add_histogram("radii", nodes.radius);
+    report.add_histogram("spacings", nodes.spacing);
+  }
   return options.check ? twins(nodes) : std::string();
 }
 
@@ -62,7 +66,8 @@ void report_fronts(const std::vector<geo::Front>& fronts, const ReportOptions& o
   std::size_t steps = 0, points = 0, sheets = 0, triangles = 0;
   std::vector<double> moves;
   for (const auto& f : fronts) {
-    sheets += f.is_sheet(), triangles += f.triangles.size();
+    sheets += f.is_sheet();
+    triangles += f.triangles.size();
     if (!f.is_sheet()) steps += f.steps.size();
     for (std::size_t s = 0; s < f.steps.size(); ++s) {
       points += f.steps[s].size();

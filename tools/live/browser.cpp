@@ -19,7 +19,11 @@ bool open_browser(const std::string& url) {
   if (child == 0) {
     if (::fork() != 0) ::_exit(0);
     ::setsid();
-    if (const int null = ::open("/dev/null", O_RDWR); null >= 0) ::dup2(null, 0), ::dup2(null, 1), ::dup2(null, 2);
+    if (const int null = ::open("/dev/null", O_RDWR); null >= 0) {
+      ::dup2(null, 0);
+      ::dup2(null, 1);
+      ::dup2(null, 2);
+    }
     ::execlp("xdg-open", "xdg-open", url.c_str(), static_cast<char*>(nullptr));
     ::_exit(127);
   }
@@ -31,7 +35,10 @@ std::string random_token() {
   std::uint8_t bytes[16];
   if (::getrandom(bytes, sizeof bytes, 0) != sizeof bytes) throw geo::OutputError("the system has no random numbers");
   std::string token;
-  for (const auto b : bytes) token += "0123456789abcdef"[b >> 4], token += "0123456789abcdef"[b & 15];
+  for (const auto b : bytes) {
+    token += "0123456789abcdef"[b >> 4];
+    token += "0123456789abcdef"[b & 15];
+  }
   return token;
 }
 

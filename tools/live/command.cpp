@@ -156,7 +156,8 @@ Stroke scalpel_of(Table& t) {
   for (const auto& [point, normal] : t.pairs("way", 3))
     s.way.push_back(across_surface(point, t.unit("way", {normal[0], normal[1], normal[2]}), s.depth));
   const EdgePose pose = across_surface(s.origin, s.direction, s.depth);
-  s.origin = pose.origin, s.direction = pose.direction;
+  s.origin = pose.origin;
+  s.direction = pose.direction;
   s.above = share_above * s.depth;
   s.depth += *s.above;
   return s;

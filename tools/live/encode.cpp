@@ -16,7 +16,11 @@ static_assert(std::endian::native == std::endian::little);
 class Bytes {
  public:
   Bytes(Kind kind, std::uint8_t flags, std::uint32_t sequence, double time) {
-    put(static_cast<std::uint8_t>(kind)), put(flags), put(std::uint16_t(1)), put(sequence), put(time);
+    put(static_cast<std::uint8_t>(kind));
+    put(flags);
+    put(std::uint16_t(1));
+    put(sequence);
+    put(time);
   }
   template <class T>
   void put(const T& value) {
@@ -74,8 +78,11 @@ void put_frame(Bytes& bytes, const Snapshot& s, const Content& content) {
   if (flags & 1)
     for (const geo::Vec3& p : s.nodes) grid.box.add(p);
   grid.fit();
-  bytes.put(s.topology->revision), bytes.put_size(s.positions.size()), bytes.put_size(s.node_count);
-  bytes.put_size(statistics.size()), bytes.put_text(statistics);
+  bytes.put(s.topology->revision);
+  bytes.put_size(s.positions.size());
+  bytes.put_size(s.node_count);
+  bytes.put_size(statistics.size());
+  bytes.put_text(statistics);
   for (int k = 0; k < 3; ++k) bytes.put(grid.lo[k]);
   for (int k = 0; k < 3; ++k) bytes.put(grid.step[k]);
   grid.put(bytes, s.positions);
@@ -96,9 +103,14 @@ std::string encode_state(const Snapshot& s, const Content& content) {
   const Topology& t = *s.topology;
   Bytes bytes(Kind::state, flags_of(s, content), content.sequence, s.time);
   const std::string scene = Bytes::padded(*s.scene);
-  bytes.put(t.revision), bytes.put(t.vertices), bytes.put_size(t.triangle.size()), bytes.put_size(s.node_count);
-  bytes.put_size(scene.size()), bytes.put_text(scene);
-  bytes.put_all(t.triangle), bytes.put_all(t.patch);
+  bytes.put(t.revision);
+  bytes.put(t.vertices);
+  bytes.put_size(t.triangle.size());
+  bytes.put_size(s.node_count);
+  bytes.put_size(scene.size());
+  bytes.put_text(scene);
+  bytes.put_all(t.triangle);
+  bytes.put_all(t.patch);
   bytes.pad();
   put_frame(bytes, s, content);
   return bytes.take();
@@ -113,11 +125,18 @@ std::string encode_frame(const Snapshot& s, const Topology& known, const Content
   }
   const TopologyChange change = change_between(known, t);
   Bytes bytes(Kind::delta, flags_of(s, content), content.sequence, s.time);
-  bytes.put(known.revision), bytes.put(t.revision), bytes.put(t.vertices);
-  bytes.put_size(change.removed.size()), bytes.put_size(change.added.size());
+  bytes.put(known.revision);
+  bytes.put(t.revision);
+  bytes.put(t.vertices);
+  bytes.put_size(change.removed.size());
+  bytes.put_size(change.added.size());
   bytes.put_all(change.removed);
   std::vector<std::uint8_t> patch;
-  for (const auto slot : change.added) bytes.put(slot), bytes.put(t.triangle[slot]), patch.push_back(t.patch[slot]);
+  for (const auto slot : change.added) {
+    bytes.put(slot);
+    bytes.put(t.triangle[slot]);
+    patch.push_back(t.patch[slot]);
+  }
   bytes.put_all(patch);
   bytes.pad();
   put_frame(bytes, s, content);
@@ -127,7 +146,10 @@ std::string encode_frame(const Snapshot& s, const Topology& known, const Content
 std::string encode_graph(const Snapshot& s, std::uint32_t sequence) {
   Bytes bytes(Kind::graph, 0, sequence, s.time);
   bytes.put_size(s.graph->size());
-  for (const auto& [a, b] : *s.graph) bytes.put(a), bytes.put(b);
+  for (const auto& [a, b] : *s.graph) {
+    bytes.put(a);
+    bytes.put(b);
+  }
   return bytes.take();
 }
 

@@ -87,8 +87,14 @@ std::string difference(std::string_view from, std::string_view to) {
     }
     if (at == Blocks::none) break;
     std::size_t end = i + block, source = at + block;
-    while (end < to.size() && source < from.size() && to[end] == from[source]) ++end, ++source;
-    while (i > done && at > 0 && to[i - 1] == from[at - 1]) --i, --at;
+    while (end < to.size() && source < from.size() && to[end] == from[source]) {
+      ++end;
+      ++source;
+    }
+    while (i > done && at > 0 && to[i - 1] == from[at - 1]) {
+      --i;
+      --at;
+    }
     append(result, to.substr(done, i - done), at, end - i);
     done = i = end;
   }

@@ -86,13 +86,19 @@ class Loop {
     if (session().end_late_strokes(1 / session().original().frame_rate, latest_end) > 0)
       say("the edge is far behind the pointer: a stroke ends where it is");
     steps_ = std::max(0, steps_ - 1);
-    if (const Effort effort = pacer_.effort(); effort != effort_) session().set_effort(effort), effort_ = effort;
+    if (const Effort effort = pacer_.effort(); effort != effort_) {
+      session().set_effort(effort);
+      effort_ = effort;
+    }
   }
 
   // Gives freed memory back to the system from time to time.
   void release() {
     constexpr std::chrono::seconds interval(10);
-    if (const auto now = Clock::now(); now - released_ > interval) release_free_memory(), released_ = now;
+    if (const auto now = Clock::now(); now - released_ > interval) {
+      release_free_memory();
+      released_ = now;
+    }
   }
 
   bool is_deserted() const {
@@ -113,7 +119,8 @@ class Loop {
     }
   }
   bool obey(ClientId page, Join&) {
-    pages_.insert(page), came_ = true;
+    pages_.insert(page);
+    came_ = true;
     for (const std::string& note : shown_.notes) server_.tell(page, "notice", note);
     return true;
   }
@@ -167,8 +174,14 @@ class Loop {
     session().obey(page, c);
     return paused_ && c.phase != Phase::move;
   }
-  bool obey_command(ClientId, const Pin& c) { return session().obey(c), true; }
-  bool obey_command(ClientId, const Set& c) { return session().obey(c), true; }
+  bool obey_command(ClientId, const Pin& c) {
+    session().obey(c);
+    return true;
+  }
+  bool obey_command(ClientId, const Set& c) {
+    session().obey(c);
+    return true;
+  }
   bool obey_command(ClientId, const Undo&) {
     session().undo();
     restart();
@@ -187,13 +200,26 @@ class Loop {
     wait();
     return true;
   }
-  bool obey_command(ClientId, const Pause& c) { return paused_ = c.on, true; }
-  bool obey_command(ClientId, const Step&) { return paused_ = true, ++steps_, false; }
+  bool obey_command(ClientId, const Pause& c) {
+    paused_ = c.on;
+    return true;
+  }
+  bool obey_command(ClientId, const Step&) {
+    paused_ = true;
+    ++steps_;
+    return false;
+  }
 
   // After going back, the effort is what the recording says.
-  void restart() { effort_ = session().effort(), pacer_.restart(); }
+  void restart() {
+    effort_ = session().effort();
+    pacer_.restart();
+  }
 
-  void say(const std::string& sentence) { message_ = sentence, said_ = Clock::now(); }
+  void say(const std::string& sentence) {
+    message_ = sentence;
+    said_ = Clock::now();
+  }
 
   void publish() {
     auto s = std::make_shared<Snapshot>();
@@ -205,8 +231,12 @@ class Loop {
       for (std::size_t i = 0; i < s->nodes.size(); ++i) s->nodes[i] += run.state().motion.displacement[i];
     }
     if (server_.wants_stress()) s->stress = geo::von_mises_stress(run.solid(), run.body().nodes, run.state().motion);
-    if (const auto asked = server_.graphs_wanted(); asked != graphs_) graphs_ = asked, graph_ = edges();
-    s->graph = graph_, s->graph_number = graphs_;
+    if (const auto asked = server_.graphs_wanted(); asked != graphs_) {
+      graphs_ = asked;
+      graph_ = edges();
+    }
+    s->graph = graph_;
+    s->graph_number = graphs_;
     s->scene = scene_;
     s->statistics = statistics_text(session(), pace());
     server_.publish(std::move(s));

@@ -51,7 +51,10 @@ Effort Pacer::effort() {
   if (since_change_ < patience) return now_;
   const double load = step_ / period_;
   const Effort wanted = load > heavy ? reduced(load) : restored(load);
-  if (wanted != now_) now_ = wanted, since_change_ = 0;
+  if (wanted != now_) {
+    now_ = wanted;
+    since_change_ = 0;
+  }
   return now_;
 }
 

@@ -35,7 +35,8 @@ Json obstacles_of(const geo::Scene& scene) {
   for (const geo::SceneObstacle& o : scene.obstacles) {
     Json about{{"name", o.name}};
     if (o.mesh.triangles.empty()) {
-      about["point"] = point(o.place.position), about["normal"] = point(o.place.rotation * o.normal.normalized());
+      about["point"] = point(o.place.position);
+      about["normal"] = point(o.place.rotation * o.normal.normalized());
     } else {
       std::vector<geo::Vec3> world;
       for (const geo::Vec3& p : o.mesh.vertices) world.push_back(o.place * (o.scale * p));
@@ -96,7 +97,10 @@ std::string scene_text(const Session& session, const std::string& name, std::uin
 std::string statistics_text(const Session& session, const Pace& pace) {
   const geo::Scene& now = session.run().scene();
   Json force = Json::array(), edges = Json::array(), pins = Json::array();
-  for (const auto& [edge, newtons] : session.edges()) edges.push_back(flat(edge)), force.push_back(six(newtons));
+  for (const auto& [edge, newtons] : session.edges()) {
+    edges.push_back(flat(edge));
+    force.push_back(six(newtons));
+  }
   for (const geo::Vec3& p : session.pins()) pins.push_back(point(p));
   Json holds = Json::array();
   for (const Session::Hold& h : session.holds())

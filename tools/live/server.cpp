@@ -130,7 +130,8 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
  public:
   Link(Impl& hub, Socket socket) : hub_(hub), id_(++hub.last_id), ws_(std::move(socket)) {}
   ~Link() {
-    want_nodes(false), want_stress(false);
+    want_nodes(false);
+    want_stress(false);
     hub_.links.erase(id_);
     if (joined_) hub_.inbox.put({id_, Leave{}});
     --hub_.connections;
@@ -242,7 +243,10 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
   }
   bool within_rate() {
     const auto now = std::chrono::steady_clock::now();
-    if (now - second_ > std::chrono::seconds(1)) second_ = now, messages_ = 0;
+    if (now - second_ > std::chrono::seconds(1)) {
+      second_ = now;
+      messages_ = 0;
+    }
     if (++messages_ == most_messages + 1) tell("error", "more than 240 messages a second are left out");
     return messages_ <= most_messages;
   }

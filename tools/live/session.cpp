@@ -90,7 +90,9 @@ bool is_straight(const EdgePose& from, std::span<const EdgePose> between, const 
 // The pose of an edge along local z, whose back is along local x.
 geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo::Vec3& back) {
   geo::Mat3 axes;
-  axes << back, direction.cross(back), direction;
+  axes << back;
+  direction.cross(back);
+  direction;
   return {origin, Eigen::Quaterniond(axes).normalized()};
 }
 
@@ -164,7 +166,9 @@ void Session::obey(ClientId page, const Stroke& stroke) {
     require_free_hand();
     if (stroke.depth > 100 * geo::bounding_box(setup_.models.all).diagonal()) throw BadMessage("the edge is too long");
     HeldBlade& held = blades_[hand];
-    held.now = {stroke.origin, stroke.direction}, held.length = stroke.depth, held.above = stroke.above;
+    held.now = {stroke.origin, stroke.direction};
+    held.length = stroke.depth;
+    held.above = stroke.above;
     return;
   }
   const auto held = blades_.find(hand);
@@ -185,7 +189,10 @@ geo::Vec3 Session::material_point(const Spot& spot, geo::SurfaceVertexId& neares
     const int corner = side.which == 1 && k > 0 ? 3 - k : k;
     const auto v = surface.surface_vertex(side, corner);
     x += spot.bary[k] * surface.point(surface.site(v));
-    if (k == 0 || spot.bary[k] > spot.bary[most]) most = k, nearest = v;
+    if (k == 0 || spot.bary[k] > spot.bary[most]) {
+      most = k;
+      nearest = v;
+    }
   }
   return x;
 }
@@ -224,7 +231,8 @@ void Session::begin_grab(const Hand& hand, const Grab& grab) {
   geo::SurfaceVertexId nearest;
   const geo::Vec3 x = material_point(grab.spot, nearest);
   geo::Pull pull;
-  pull.point = x, pull.node = carrier_of(nearest).value;
+  pull.point = x;
+  pull.node = carrier_of(nearest).value;
   pull.stiffness = pull_stiffness(*pull.node);
   const std::size_t p = run_.add_pull(std::move(pull));
   run_.extend_pull(p, 0, world_point(grab.spot));
@@ -240,7 +248,8 @@ void Session::obey(ClientId page, const Grab& grab) {
   }
   const auto held = pulls_.find(hand);
   if (held == pulls_.end()) return;
-  held->second.to = grab.to, held->second.ends = grab.phase == Phase::end;
+  held->second.to = grab.to;
+  held->second.ends = grab.phase == Phase::end;
   if (grab.phase != Phase::hold) return;
   if (holds_.size() >= most_hands) throw BadMessage("as many places are held as can be at a time");
   if (held->second.number == 0) held->second.number = ++last_hold_;
@@ -263,16 +272,21 @@ void Session::obey(const Pin& pin) {
   require_space();
   const double radius = pin.radius > 0 ? pin.radius : coarsest_spacing(run_.body());
   geo::Grip grip;
-  grip.lo = x - geo::Vec3::Constant(radius), grip.hi = x + geo::Vec3::Constant(radius);
+  grip.lo = x - geo::Vec3::Constant(radius);
+  grip.hi = x + geo::Vec3::Constant(radius);
   const geo::Vec3& node = run_.body().nodes.position[carrier_of(nearest).index()];
-  grip.lo = grip.lo.cwiseMin(node), grip.hi = grip.hi.cwiseMax(node);
+  grip.lo = grip.lo.cwiseMin(node);
+  grip.hi = grip.hi.cwiseMax(node);
   pins_.push_back({run_.add_grip(std::move(grip)), x, world_point(pin.spot), radius});
 }
 
 void Session::obey(const Set& set) {
   if (changes_.size() >= bounds_.changes) throw BadMessage("the recording is full; save it and reset");
   geo::SceneChange change;
-  change.young = set.young, change.damping = set.damping, change.gravity = set.gravity, change.friction = set.friction;
+  change.young = set.young;
+  change.damping = set.damping;
+  change.gravity = set.gravity;
+  change.friction = set.friction;
   try {
     change_run(change);
   } catch (const geo::InputError& e) {
@@ -292,7 +306,8 @@ Effort Session::least_effort() const {
 void Session::set_effort(const Effort& effort) {
   if (changes_.size() >= bounds_.changes) return;
   geo::SceneChange change;
-  change.accuracy = effort.accuracy, change.dt = 1 / run_.scene().frame_rate / effort.steps;
+  change.accuracy = effort.accuracy;
+  change.dt = 1 / run_.scene().frame_rate / effort.steps;
   change_run(change);
 }
 
@@ -371,13 +386,17 @@ void Session::resume(const geo::Scene& scene, const std::string& state, int fram
 }
 
 void Session::go_on_from(const geo::Scene& scene, const std::string& checkpoint) {
-  blades_.clear(), pulls_.clear(), slots_.clear();
+  blades_.clear();
+  pulls_.clear();
+  slots_.clear();
   // The old run goes first. Otherwise the new one fills the gaps that the old one leaves, and keeps
   // the pages around them.
   { const geo::Simulation ended = std::move(run_); }
   release_free_memory();
   run_ = sim::run_from(scene, checkpoint);
-  stats_ = {}, has_cut_ = false, faces_ = run_.body().surface.face_count();
+  stats_ = {};
+  has_cut_ = false;
+  faces_ = run_.body().surface.face_count();
   count_pieces();
 }
 
@@ -492,8 +511,10 @@ void Session::add_blade(HeldBlade& held, const EdgePose& from) {
   const double n = std::clamp(std::ceil(held.length / finest_spacing(run_.body())), 1.0, finest_edge);
   for (int i = 0; i <= static_cast<int>(n); ++i) blade.points.push_back({0, 0, held.length * i / n});
   blade.limit = most_motion;
-  blade.back = {blade_width * coarsest, 0, 0}, blade.thickness = blade_thickness * coarsest;
-  held.blade = run_.add_blade(std::move(blade)), held.faces = run_.body().surface.face_count();
+  blade.back = {blade_width * coarsest, 0, 0};
+  blade.thickness = blade_thickness * coarsest;
+  held.blade = run_.add_blade(std::move(blade));
+  held.faces = run_.body().surface.face_count();
   run_.extend_blade(*held.blade, 0,
                     pose_of(from.origin, from.direction, across(held.back, from.direction).normalized()));
 }

@@ -24,7 +24,11 @@ TopologyChange change_between(const Topology& from, const Topology& to) {
 
 void Slots::clear() {
   seen_ = {none, none, none};
-  vertex_slot_.clear(), side_slot_.clear(), side_of_slot_.clear(), free_vertices_.clear(), free_faces_.clear();
+  vertex_slot_.clear();
+  side_slot_.clear();
+  side_of_slot_.clear();
+  free_vertices_.clear();
+  free_faces_.clear();
   vertex_slots_ = 0;
 }
 
@@ -55,13 +59,17 @@ bool Slots::update(const geo::Complex& complex) {
                                          complex.live_face_count()};
   if (topology_ && now == seen_) return false;
   seen_ = now;
-  vertex_slot_.resize(now[1], none), side_slot_.resize(2 * std::size_t(now[0]), none);
+  vertex_slot_.resize(now[1], none);
+  side_slot_.resize(2 * std::size_t(now[0]), none);
   for (std::uint32_t v = 0; v < now[1]; ++v)
-    if (vertex_slot_[v] != none && !complex.alive(geo::SurfaceVertexId(v)))
-      free_vertices_.push_back(vertex_slot_[v]), vertex_slot_[v] = none;
+    if (vertex_slot_[v] != none && !complex.alive(geo::SurfaceVertexId(v))) {
+      free_vertices_.push_back(vertex_slot_[v]);
+      vertex_slot_[v] = none;
+    }
   for (std::uint32_t s = 0; s < side_slot_.size(); ++s)
     if (side_slot_[s] != none && !complex.alive(geo::FaceId(s / 2))) {
-      free_faces_.push_back(side_slot_[s]), side_of_slot_[side_slot_[s]] = none;
+      free_faces_.push_back(side_slot_[s]);
+      side_of_slot_[side_slot_[s]] = none;
       side_slot_[s] = none;
     }
   std::sort(free_vertices_.begin(), free_vertices_.end(), std::greater<>());
@@ -80,7 +88,8 @@ bool Slots::update(const geo::Complex& complex) {
       side_of_slot_.resize(faces, none);
       side_of_slot_[side_slot_[s]] = s;
     }
-  next->triangle.assign(faces, {0, 0, 0}), next->patch.assign(faces, 0);
+  next->triangle.assign(faces, {0, 0, 0});
+  next->patch.assign(faces, 0);
   for (std::uint32_t slot = 0; slot < faces; ++slot) {
     const geo::Side side = this->side(slot);
     if (!side.face.valid()) continue;
@@ -89,7 +98,8 @@ bool Slots::update(const geo::Complex& complex) {
     if (side.which == 1) std::swap(t[1], t[2]);
     next->patch[slot] = static_cast<std::uint8_t>(std::min(complex.face(side.face).crack, 255));
   }
-  next->vertices = vertex_slots_, next->revision = ++revision_;
+  next->vertices = vertex_slots_;
+  next->revision = ++revision_;
   topology_ = std::move(next);
   return true;
 }

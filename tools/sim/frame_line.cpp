@@ -39,7 +39,10 @@ std::string seconds_in_words(const geo::FrameStats& stats) {
   double all = 0;
   std::string text;
   char shown[32];
-  const auto rounded = [&](double s) { return std::snprintf(shown, sizeof shown, "%.2g", s), std::string(shown); };
+  const auto rounded = [&](double s) {
+    std::snprintf(shown, sizeof shown, "%.2g", s);
+    return std::string(shown);
+  };
   for (const auto& [name, s] : phases(stats)) {
     all += s;
     if (rounded(s) != "0") text += (text.empty() ? "" : ", ") + name + " " + rounded(s);

@@ -73,7 +73,8 @@ void FrameWriter::run() {
       error = std::current_exception();
     }
     lock.lock();
-    busy_ = false, error_ = error;
+    busy_ = false;
+    error_ = error;
     changed_.notify_all();
     if (error_) return;
   }

@@ -126,7 +126,8 @@ void warn_of_missed_blades(const Setup& setup, double time, const tool::Tool& t)
   double from = blades[0].motion.keys.front().time, to = blades[0].motion.keys.back().time;
   geo::Box3 box;
   for (const geo::Blade& blade : blades) {
-    from = std::min(from, blade.motion.keys.front().time), to = std::max(to, blade.motion.keys.back().time);
+    from = std::min(from, blade.motion.keys.front().time);
+    to = std::max(to, blade.motion.keys.back().time);
     for (const auto& key : blade.motion.keys)
       for (const geo::Vec3& p : blade.at(key.time)) box.add(p);
   }

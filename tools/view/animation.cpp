@@ -27,7 +27,9 @@ namespace {
 struct WebpPicture : WebPPicture {
   explicit WebpPicture(const Picture& from) {
     if (!WebPPictureInit(this)) fail("libwebp is of another version");
-    width = from.width, height = from.height, use_argb = 1;
+    width = from.width;
+    height = from.height;
+    use_argb = 1;
     if (!WebPPictureImportRGB(this, rgb_bytes(from).data(), 3 * from.width)) fail("out of memory");
   }
   ~WebpPicture() { WebPPictureFree(this); }

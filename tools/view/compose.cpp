@@ -40,7 +40,8 @@ void add_obstacles(Stage& stage, const geo::TriangleMesh& mesh) {
     stage.surface.patch.resize(stage.surface.triangles.size() + mesh.triangles.size(), 0);
   for (const auto& [a, b, c] : mesh.triangles) {
     stage.surface.triangles.push_back({first + a, first + b, first + c});
-    stage.triangle_colors.push_back(rigid), stage.back_colors.push_back(rigid);
+    stage.triangle_colors.push_back(rigid);
+    stage.back_colors.push_back(rigid);
   }
   stage.obstacles = mesh.triangles.size();
 }
@@ -50,7 +51,10 @@ geo::Box3 box_without_obstacles(const Stage& stage) {
   for (std::size_t t = 0; t + stage.obstacles < stage.surface.triangles.size(); ++t)
     for (const auto v : stage.surface.triangles[t]) box.add(stage.surface.vertices[v]);
   for (const auto& s : stage.spheres) box.add(geo::Box3{s.center, s.center}.grown(s.radius));
-  for (const auto& s : stage.sticks) box.add(s.a), box.add(s.b);
+  for (const auto& s : stage.sticks) {
+    box.add(s.a);
+    box.add(s.b);
+  }
   return box;
 }
 
@@ -154,11 +158,17 @@ void add_outermost(const Stage& stage, const geo::Box3& frame, std::vector<Vec3>
       const Vec3 way(across * std::cos(turn), across * std::sin(turn), height);
       double farthest = -std::numeric_limits<double>::infinity();
       const auto take = [&](const Vec3& p) {
-        if (const double far = way.dot(p); far > farthest) farthest = far, points[k] = p;
+        if (const double far = way.dot(p); far > farthest) {
+          farthest = far;
+          points[k] = p;
+        }
       };
       for (const Vec3& p : all) take(p);
       for (const auto& s : stage.spheres) take(within(s.center + s.radius * way));
-      for (const auto& s : stage.sticks) take(within(s.a + s.radius * way)), take(within(s.b + s.radius * way));
+      for (const auto& s : stage.sticks) {
+        take(within(s.a + s.radius * way));
+        take(within(s.b + s.radius * way));
+      }
     }
   });
 }

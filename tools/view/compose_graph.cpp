@@ -30,7 +30,8 @@ std::map<std::uint32_t, std::uint32_t> paths_from(const geo::Body& body, std::ui
       const double d = so_far + (body.nodes.position[i] - body.nodes.position[j.index()]).norm();
       const auto known = length.find(j.value);
       if (d > reach || (known != length.end() && known->second <= d)) continue;
-      length[j.value] = open[j.value] = d, from[j.value] = i;
+      length[j.value] = open[j.value] = d;
+      from[j.value] = i;
     }
   }
   return from;

@@ -26,8 +26,10 @@ std::vector<std::uint32_t> containing_pieces(const geo::TriangleMesh& surface, c
   std::vector<geo::Vec3> points;
   std::vector<std::uint32_t> piece_of_point;
   for (std::uint32_t p = 0; p < count; ++p)
-    for (std::size_t k = 0; k < nodes[p].size(); k += nodes[p].size() / sampled + 1)
-      points.push_back(frame.position[nodes[p][k]]), piece_of_point.push_back(p);
+    for (std::size_t k = 0; k < nodes[p].size(); k += nodes[p].size() / sampled + 1) {
+      points.push_back(frame.position[nodes[p][k]]);
+      piece_of_point.push_back(p);
+    }
   const auto nearest = geo::nearest_triangles(surface, points);
   std::vector<std::map<std::uint32_t, std::size_t>> votes(count);
   for (std::size_t k = 0; k < points.size(); ++k)
@@ -35,7 +37,10 @@ std::vector<std::uint32_t> containing_pieces(const geo::TriangleMesh& surface, c
   for (std::uint32_t p = 0; p < count; ++p) {
     std::size_t most = 0;
     for (const auto& [piece, times] : votes[p])
-      if (times > most) most = times, containing[p] = piece;
+      if (times > most) {
+        most = times;
+        containing[p] = piece;
+      }
   }
   return containing;
 }
@@ -54,7 +59,8 @@ MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const s
     geo::FrameNodes file = geo::parse_frame_nodes(geo::read_all(run.nodes[f]), run.nodes[f]);
     MovingNodes::Frame frame{file.nodes.size(), std::move(file.nodes.position), std::move(file.stress), {}};
     frame.count = std::min(frame.count, rest.size());  // a run that was stopped has nodes newer than its checkpoint
-    frame.position.resize(frame.count), frame.stress.resize(frame.count);
+    frame.position.resize(frame.count);
+    frame.stress.resize(frame.count);
     frame.position.insert(frame.position.end(), rest.begin() + static_cast<std::ptrdiff_t>(frame.count), rest.end());
     stresses.insert(stresses.end(), frame.stress.begin(), frame.stress.end());
     frame.stress.resize(rest.size(), 0);

@@ -53,8 +53,10 @@ void Pack::whole(const std::string& name, const std::vector<std::uint32_t>& valu
 
 void Pack::scaled(const std::string& name, const std::vector<double>& values) {
   double lo = 0, hi = 0;
-  if (!values.empty())
-    lo = *std::min_element(values.begin(), values.end()), hi = *std::max_element(values.begin(), values.end());
+  if (!values.empty()) {
+    lo = *std::min_element(values.begin(), values.end());
+    hi = *std::max_element(values.begin(), values.end());
+  }
   scaled(name, values, lo, hi);
 }
 
@@ -63,7 +65,8 @@ void Pack::scaled(const std::string& name, const std::vector<double>& values, do
   std::vector<std::uint32_t> steps;
   for (const double x : values) steps.push_back(sixteen_bits(x, lo, hi - lo));
   whole(name, steps, 2, 1, base);
-  manifest_.back()["lo"] = {lo}, manifest_.back()["step"] = {(hi - lo) / 65535};
+  manifest_.back()["lo"] = {lo};
+  manifest_.back()["step"] = {(hi - lo) / 65535};
 }
 
 void Pack::points(const std::string& name, const std::vector<geo::Vec3>& values, const geo::Box3& box,
@@ -80,9 +83,12 @@ void Pack::points(const std::string& name, const std::vector<geo::Vec3>& values,
   whole(name, steps, 2, 3, base);
   auto lo = nlohmann::ordered_json::array(), step = nlohmann::ordered_json::array();
   const double unit = 0.5 * box.diagonal();
-  for (int k = 0; k < 3; ++k)
-    lo.push_back(unit > 0 ? begin[k] / unit : 0), step.push_back(unit > 0 ? size[k] / unit / 65535 : 0);
-  manifest_.back()["lo"] = lo, manifest_.back()["step"] = step;
+  for (int k = 0; k < 3; ++k) {
+    lo.push_back(unit > 0 ? begin[k] / unit : 0);
+    step.push_back(unit > 0 ? size[k] / unit / 65535 : 0);
+  }
+  manifest_.back()["lo"] = lo;
+  manifest_.back()["step"] = step;
 }
 
 std::string Pack::text() const {

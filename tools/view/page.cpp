@@ -81,7 +81,10 @@ class Writer {
     if (!kept.empty())
       notice("obstacles", "Obstacles decimated for this page: " + std::to_string(shown.triangles.size()) + " of " +
                               counted(frames[0].triangles.size(), "triangles shown"));
-    if (kept.empty()) kept.resize(shown.vertices.size()), std::iota(kept.begin(), kept.end(), 0u);
+    if (kept.empty()) {
+      kept.resize(shown.vertices.size());
+      std::iota(kept.begin(), kept.end(), 0u);
+    }
     for (const auto& t : shown.triangles) corners.insert(corners.end(), t.begin(), t.end());
     pack_.whole("obstacles/triangles", corners, 4, 3);
     std::string last;
@@ -124,13 +127,17 @@ class Writer {
       const std::string number = std::to_string(f);
       pack_.points("nodes/at" + number, thinned(frame.position), box_, position);
       pack_.scaled("stress/at" + number, thinned(frame.stress), 0, most, stress);
-      position = "nodes/at" + number, stress = "stress/at" + number;
+      position = "nodes/at" + number;
+      stress = "stress/at" + number;
       about["frames"].push_back({{"count", (frame.count + step - 1) / step},
                                  {"position", position},
                                  {"stress", stress},
                                  {"pieces", frame.piece_of}});
     }
-    if (!moving.frames.empty()) about["fields"].push_back("stress"), about["stress"] = {0, moving.stress_shown};
+    if (!moving.frames.empty()) {
+      about["fields"].push_back("stress");
+      about["stress"] = {0, moving.stress_shown};
+    }
     const double unit = std::max(0.5 * box_.diagonal(), 1e-300);
     std::vector<double> size;
     for (const double s : nodes.spacing) size.push_back(s / unit);
@@ -149,8 +156,10 @@ class Writer {
     for (std::size_t f = 0; f < fronts.size(); ++f) {
       std::vector<geo::Vec3> points;
       json counts = json::array();
-      for (const auto& step : fronts[f].steps)
-        points.insert(points.end(), step.begin(), step.end()), counts.push_back(step.size());
+      for (const auto& step : fronts[f].steps) {
+        points.insert(points.end(), step.begin(), step.end());
+        counts.push_back(step.size());
+      }
       const std::string name = "front" + std::to_string(f);
       pack_.points(name, points, box_);
       about_["fronts"].push_back(
@@ -159,8 +168,12 @@ class Writer {
   }
 
   Page page(const std::string& title, const PageOptions& options) {
-    about_["title"] = title, about_["rate"] = options.frame_rate, about_["y_up"] = options.y_up,
-    about_["unit"] = 0.5 * box_.diagonal(), about_["made"] = made, about_["arrays"] = pack_.manifest();
+    about_["title"] = title;
+    about_["rate"] = options.frame_rate;
+    about_["y_up"] = options.y_up;
+    about_["unit"] = 0.5 * box_.diagonal();
+    about_["made"] = made;
+    about_["arrays"] = pack_.manifest();
     Page page;
     for (const auto& [key, text] : notice_of_) page.notices.push_back(text);
     about_["notices"] = page.notices;
@@ -216,7 +229,10 @@ class Writer {
     pack_.whole("graph/bits", bits, 1, 1);
     pack_.scaled("graph/distance", distance);
     Numbers pairs;
-    for (const auto& [i, j] : cut_edges(body, before)) pairs.push_back(i), pairs.push_back(j);
+    for (const auto& [i, j] : cut_edges(body, before)) {
+      pairs.push_back(i);
+      pairs.push_back(j);
+    }
     pack_.whole("graph/cut", pairs, 4, 2);
     if (before) {
       const auto updated = updated_nodes(body, *before);

@@ -44,7 +44,8 @@ PieceMap pieces_of(const geo::TriangleMesh& mesh) {
     const std::uint32_t s = shell[a];
     const Vec3 o = box[s].center();
     const double part = (mesh.vertices[a] - o).dot((mesh.vertices[b] - o).cross(mesh.vertices[c] - o));
-    volume[s] += part, terms[s] += std::abs(part) + 1e-3 * std::pow(box[s].diagonal(), 3);
+    volume[s] += part;
+    terms[s] += std::abs(part) + 1e-3 * std::pow(box[s].diagonal(), 3);
   }
   // A shell without positive volume, beyond rounding, bounds a cavity or an inner crack. It belongs
   // to the smallest shell around it.
@@ -59,8 +60,10 @@ PieceMap pieces_of(const geo::TriangleMesh& mesh) {
   PieceMap pieces;
   std::vector<std::uint32_t> number(shells);
   for (std::uint32_t s = 0; s < shells; ++s)
-    if (outer[s] == s)
-      number[s] = static_cast<std::uint32_t>(pieces.center.size()), pieces.center.push_back(box[s].center());
+    if (outer[s] == s) {
+      number[s] = static_cast<std::uint32_t>(pieces.center.size());
+      pieces.center.push_back(box[s].center());
+    }
   for (const std::uint32_t s : shell) pieces.of_row.push_back(number[outer[s]]);
   return pieces;
 }

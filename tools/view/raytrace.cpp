@@ -27,7 +27,11 @@ Color mixed(const Color& a, const Color& b, double t) {
 // Integer hash of a pixel sample (lowbias32 by C. Wellons, 2018): noise that does not depend on
 // threads.
 std::uint32_t hash(std::uint32_t x) {
-  x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu, x ^= x >> 16;
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  x ^= x >> 16;
   return x;
 }
 
@@ -110,7 +114,9 @@ class Tracer {
   explicit Tracer(const Stage& stage) : stage_(stage), normals_(smooth_normals(stage.surface)) {
     device_ = rtcNewDevice("threads=1,set_affinity=0");
     if (!device_) throw geo::OutputError("the ray tracer cannot start");
-    surface_ = rtcNewScene(device_), things_ = rtcNewScene(device_), counter_ = rtcNewScene(device_);
+    surface_ = rtcNewScene(device_);
+    things_ = rtcNewScene(device_);
+    counter_ = rtcNewScene(device_);
     for (RTCScene scene : {surface_, things_, counter_}) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     add_surface(surface_, false);
     add_surface(counter_, true);
@@ -152,7 +158,10 @@ class Tracer {
     Color behind = thing.t < 1e29 ? lit(thing, d, dice) : background(eye, d, dice);
     if (at_plane && stage_.section && winding(eye + from * d, d) > 0 && from <= thing.t) {
       Hit cap;
-      cap.t = from, cap.point = eye + from * d, cap.normal = stage_.cutaway->normal, cap.color = {0.93f, 0.70f, 0.42f};
+      cap.t = from;
+      cap.point = eye + from * d;
+      cap.normal = stage_.cutaway->normal;
+      cap.color = {0.93f, 0.70f, 0.42f};
       const double lines = std::abs(std::remainder(cap.point.sum() / scale_ * 60, 1.0));
       if (lines < 0.06) cap.color = scaled(cap.color, 0.93);
       return lit(cap, d, dice);
@@ -232,7 +241,8 @@ class Tracer {
         for (int c = 0; c < 3; ++c) *p++ = static_cast<float>((*end)[c]);
         *p++ = static_cast<float>(s.radius);
       }
-      *i++ = row, row += 2;
+      *i++ = row;
+      row += 2;
     }
     rtcCommitGeometry(g);
     rtcAttachGeometryByID(things_, g, 2);
@@ -241,9 +251,15 @@ class Tracer {
 
   static RTCRayHit make_ray(const Vec3& o, const Vec3& d, double from, double to) {
     RTCRayHit r{};
-    r.ray.org_x = float(o.x()), r.ray.org_y = float(o.y()), r.ray.org_z = float(o.z());
-    r.ray.dir_x = float(d.x()), r.ray.dir_y = float(d.y()), r.ray.dir_z = float(d.z());
-    r.ray.tnear = float(from), r.ray.tfar = float(to), r.ray.mask = ~0u;
+    r.ray.org_x = float(o.x());
+    r.ray.org_y = float(o.y());
+    r.ray.org_z = float(o.z());
+    r.ray.dir_x = float(d.x());
+    r.ray.dir_y = float(d.y());
+    r.ray.dir_z = float(d.z());
+    r.ray.tnear = float(from);
+    r.ray.tfar = float(to);
+    r.ray.mask = ~0u;
     r.hit.geomID = r.hit.primID = RTC_INVALID_GEOMETRY_ID;
     return r;
   }
@@ -360,9 +376,19 @@ Vec3 stood_up(const Vec3& v, bool y_up) { return y_up ? Vec3(v.x(), -v.z(), v.y(
 Stage placed(Stage stage, const Vec3& middle, double scale, bool y_up) {
   const auto place = [&](Vec3& p) { p = stood_up((p - middle) * scale, y_up); };
   for (Vec3& p : stage.surface.vertices) place(p);
-  for (Sphere& s : stage.spheres) place(s.center), s.radius *= scale;
-  for (Stick& s : stage.sticks) place(s.a), place(s.b), s.radius *= scale;
-  if (stage.cutaway) place(stage.cutaway->point), stage.cutaway->normal = stood_up(stage.cutaway->normal, y_up);
+  for (Sphere& s : stage.spheres) {
+    place(s.center);
+    s.radius *= scale;
+  }
+  for (Stick& s : stage.sticks) {
+    place(s.a);
+    place(s.b);
+    s.radius *= scale;
+  }
+  if (stage.cutaway) {
+    place(stage.cutaway->point);
+    stage.cutaway->normal = stood_up(stage.cutaway->normal, y_up);
+  }
   if (stage.ground_level) *stage.ground_level = (*stage.ground_level - middle[y_up ? 1 : 2]) * scale;
   return stage;
 }
@@ -385,9 +411,10 @@ std::vector<Vec3> to_be_seen(const Camera& camera, double scale) {
 // − m| ≤ slope (d + f).
 double distance_to_see(const std::vector<Vec3>& points, const Vec3& axis, const Vec3& forward, double slope) {
   double most = -1e300, least = 1e300;
-  for (const Vec3& p : points)
-    most = std::max(most, axis.dot(p) - slope * forward.dot(p)),
+  for (const Vec3& p : points) {
+    most = std::max(most, axis.dot(p) - slope * forward.dot(p));
     least = std::min(least, axis.dot(p) + slope * forward.dot(p));
+  }
   return (most - least) / (2 * slope);
 }
 
@@ -399,7 +426,8 @@ double middle_of_view(const std::vector<Vec3>& points, const Vec3& axis, const V
     double most = -1e300, least = 1e300;
     for (const Vec3& p : points) {
       const double seen = (axis.dot(p) - m) / (distance + forward.dot(p));
-      most = std::max(most, seen), least = std::min(least, seen);
+      most = std::max(most, seen);
+      least = std::min(least, seen);
     }
     (most + least > 0 ? low : high) = m;
   }

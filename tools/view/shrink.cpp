@@ -23,7 +23,10 @@ geo::TriangleMesh clustered(const geo::TriangleMesh& mesh, const std::vector<std
     const geo::Vec3 at = (mesh.vertices[v] - lo) / edge;
     const Cell cell{std::int64_t(at.x()), std::int64_t(at.y()), std::int64_t(at.z()), piece[v], sheet[v]};
     const auto [place, fresh] = rows.try_emplace(cell, static_cast<std::uint32_t>(kept.size()));
-    if (fresh) kept.push_back(v), result.vertices.push_back(mesh.vertices[v]);
+    if (fresh) {
+      kept.push_back(v);
+      result.vertices.push_back(mesh.vertices[v]);
+    }
     row_of[v] = place->second;
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

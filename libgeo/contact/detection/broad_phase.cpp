@@ -36,7 +36,8 @@ bool BroadPhase::update(std::span<const Triangle> triangles, const std::function
     valid_ = false;
     tree_.refit_or_rebuild(std::move(boxes), triangles);
     std::optional<std::vector<Pair>> all = tree_.pairs_up_to(most);
-    valid_ = all.has_value(), pairs_ = std::move(all).value_or(std::vector<Pair>());
+    valid_ = all.has_value();
+    pairs_ = std::move(all).value_or(std::vector<Pair>());
     return valid_;
   }
   valid_ = false;  // until the list is complete
@@ -58,13 +59,15 @@ double BroadPhase::update_for_share(std::span<const Triangle> triangles, const s
   most_of_motion_ = most_per_triangle * triangles.size();
   if (update(triangles, box, margin, nullptr, most_of_motion_)) return 1;
   // Long triangles that are oblique to the axes have many pairs at rest.
-  take(0), update(triangles, box, margin);
+  take(0);
+  update(triangles, box, margin);
   most_of_motion_ += pairs_.size();
   for (double share = 1; share >= least_share; share /= 2) {
     take(share);
     if (update(triangles, box, margin, nullptr, most_of_motion_)) return share;
   }
-  take(0), update(triangles, box, margin);
+  take(0);
+  update(triangles, box, margin);
   return 0;
 }
 

@@ -47,9 +47,15 @@ class BroadPhase {
   TrianglePlanes& planes() { return planes_; }
   /// Discards boxes and pairs at the start of another step of the same triangles. The order of the
   /// tree is kept.
-  void invalidate() { valid_ = false, pairs_.clear(); }
+  void invalidate() {
+    valid_ = false;
+    pairs_.clear();
+  }
   /// Discards everything. Must be called before an update with other triangles.
-  void reset() { invalidate(), tree_ = {}; }
+  void reset() {
+    invalidate();
+    tree_ = {};
+  }
 
  private:
   TrianglePlanes planes_;

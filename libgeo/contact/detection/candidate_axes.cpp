@@ -93,7 +93,8 @@ struct Closest {
     difference = {hn::IfThenElse(better, offered.x, difference.x), hn::IfThenElse(better, offered.y, difference.y),
                   hn::IfThenElse(better, offered.z, difference.z)};
     feature = hn::IfThenElse(better, hn::Set(Doubles(), double(number)), feature);
-    s = hn::IfThenElse(better, at_s, s), t = hn::IfThenElse(better, at_t, t);
+    s = hn::IfThenElse(better, at_s, s);
+    t = hn::IfThenElse(better, at_t, t);
   }
 };
 
@@ -124,8 +125,12 @@ HWY_INLINE Closest closest_of(const V3 (&a)[3], const V3 (&b)[3]) {
   V3 u[3], v[3];
   V uu[3], vv[3], inverse_uu[3], inverse_vv[3];
   for (int i = 0; i < 3; ++i) {
-    u[i] = a[(i + 1) % 3] - a[i], v[i] = b[(i + 1) % 3] - b[i];
-    uu[i] = dot(u[i], u[i]), vv[i] = dot(v[i], v[i]), inverse_uu[i] = inverse(uu[i]), inverse_vv[i] = inverse(vv[i]);
+    u[i] = a[(i + 1) % 3] - a[i];
+    v[i] = b[(i + 1) % 3] - b[i];
+    uu[i] = dot(u[i], u[i]);
+    vv[i] = dot(v[i], v[i]);
+    inverse_uu[i] = inverse(uu[i]);
+    inverse_vv[i] = inverse(vv[i]);
   }
   const auto always = hn::Eq(zero, zero);
   for (int i = 0; i < 3; ++i)
@@ -153,9 +158,12 @@ void compute_axes(const Corners& from, const Corners& to, bool end, CandidateAxe
   const Doubles d;
   for (std::size_t lane = 0; lane < CandidateAxes::width; lane += hn::Lanes(d)) {
     V3 a[3], b[3], end_a[3], end_b[3];
-    for (int k = 0; k < 3; ++k)
-      a[k] = load(from, k, lane), b[k] = load(from, 3 + k, lane), end_a[k] = load(to, k, lane),
+    for (int k = 0; k < 3; ++k) {
+      a[k] = load(from, k, lane);
+      b[k] = load(from, 3 + k, lane);
+      end_a[k] = load(to, k, lane);
       end_b[k] = load(to, 3 + k, lane);
+    }
     // Stores axis n = ± direction / |direction|, negated where `flip` is set, and its separations.
     // Normals are flipped so that they point from b to a, as the difference of centroids does.
     const auto put = [&](int axis, const V3& direction, const hn::Mask<Doubles>& flip) HWY_ATTR {
@@ -181,8 +189,9 @@ void compute_axes(const Corners& from, const Corners& to, bool end, CandidateAxe
     put(CandidateAxes::b_normal, normal_b, hn::Lt(dot(normal_b, between), zero));
     const Closest closest = closest_of(a, b);
     put(CandidateAxes::between_closest, closest.difference, never);
-    hn::Store(closest.feature, d, features.feature + lane), hn::Store(closest.s, d, features.s + lane),
-        hn::Store(closest.t, d, features.t + lane);
+    hn::Store(closest.feature, d, features.feature + lane);
+    hn::Store(closest.s, d, features.s + lane);
+    hn::Store(closest.t, d, features.t + lane);
     if (end) put(CandidateAxes::between_closest_at_end, closest_of(end_a, end_b).difference, never);
   }
 }
@@ -200,7 +209,10 @@ void compute_tilted(const TiltInput& input, TiltedAxes& out) {
                            HWY_ATTR { return hn::Add(hn::Add(hn::Mul(n[0], x), hn::Mul(n[1], y)), hn::Mul(n[2], z)); };
     const V squared = along(n[0], n[1], n[2]);
     const V length = hn::IfThenElse(hn::Gt(squared, hn::Zero(d)), hn::Sqrt(squared), hn::Set(d, 1.0));
-    for (int k = 0; k < 3; ++k) n[k] = hn::Div(n[k], length), hn::Store(n[k], d, out.normal[k] + lane);
+    for (int k = 0; k < 3; ++k) {
+      n[k] = hn::Div(n[k], length);
+      hn::Store(n[k], d, out.normal[k] + lane);
+    }
     for (int end = 0; end < 2; ++end) {
       const auto at = [&](int corner) HWY_ATTR {
         return along(hn::Set(d, input.at[end][corner][0]), hn::Set(d, input.at[end][corner][1]),
@@ -239,7 +251,8 @@ void find_tilted_axes(const SimplexPair& pair, const CandidateAxes& axes, std::s
     for (int k = 0; k < 6; ++k) {
       const Simplex& s = k < 3 ? pair.a : pair.b;
       const auto v = s.v[std::min(k % 3, s.size - 1)];
-      input.at[0][k][axis] = from[v][axis], input.at[1][k][axis] = to[v][axis];
+      input.at[0][k][axis] = from[v][axis];
+      input.at[1][k][axis] = to[v][axis];
     }
   }
   HWY_DYNAMIC_DISPATCH(compute_tilted)(input, out);
@@ -254,8 +267,10 @@ void find_candidate_axes(const SimplexPair* pairs, std::size_t size, const std::
     for (std::size_t k = 0; k < 6; ++k) {
       const Simplex& s = k < 3 ? pair.a : pair.b;
       const auto v = s.v[std::min<int>(static_cast<int>(k % 3), s.size - 1)];  // an edge is a degenerate triangle
-      for (int axis = 0; axis < 3; ++axis)
-        start_corners.at[k][axis][lane] = from[v][axis], end_corners.at[k][axis][lane] = to[v][axis];
+      for (int axis = 0; axis < 3; ++axis) {
+        start_corners.at[k][axis][lane] = from[v][axis];
+        end_corners.at[k][axis][lane] = to[v][axis];
+      }
     }
   }
   ClosestFeatures features;
@@ -265,13 +280,17 @@ void find_candidate_axes(const SimplexPair* pairs, std::size_t size, const std::
     const double s = features.s[lane], t = features.t[lane];
     for (int k = 0; k < 3; ++k) out.weights_a[k][lane] = out.weights_b[k][lane] = 0;
     if (feature < 9) {
-      out.weights_a[feature / 3][lane] = 1 - s, out.weights_a[(feature / 3 + 1) % 3][lane] = s;
-      out.weights_b[feature % 3][lane] = 1 - t, out.weights_b[(feature % 3 + 1) % 3][lane] = t;
+      out.weights_a[feature / 3][lane] = 1 - s;
+      out.weights_a[(feature / 3 + 1) % 3][lane] = s;
+      out.weights_b[feature % 3][lane] = 1 - t;
+      out.weights_b[(feature % 3 + 1) % 3][lane] = t;
     } else {
       auto &corner = feature < 12 ? out.weights_a : out.weights_b,
            &interior = feature < 12 ? out.weights_b : out.weights_a;
       corner[feature % 3][lane] = 1;
-      interior[0][lane] = 1 - s - t, interior[1][lane] = s, interior[2][lane] = t;
+      interior[0][lane] = 1 - s - t;
+      interior[1][lane] = s;
+      interior[2][lane] = t;
     }
   }
 }

@@ -56,10 +56,14 @@ inline PairSeparation centroid_separation(const SimplexPair& pair, const std::ve
   if (const double length = n.norm(); length > 0) n /= length;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double a_start = infinity, a_end = infinity, b_start = -infinity, b_end = -infinity;
-  for (int k = 0; k < pair.a.size; ++k)
-    a_start = std::min(a_start, n.dot(from[pair.a.v[k]])), a_end = std::min(a_end, n.dot(to[pair.a.v[k]]));
-  for (int k = 0; k < pair.b.size; ++k)
-    b_start = std::max(b_start, n.dot(from[pair.b.v[k]])), b_end = std::max(b_end, n.dot(to[pair.b.v[k]]));
+  for (int k = 0; k < pair.a.size; ++k) {
+    a_start = std::min(a_start, n.dot(from[pair.a.v[k]]));
+    a_end = std::min(a_end, n.dot(to[pair.a.v[k]]));
+  }
+  for (int k = 0; k < pair.b.size; ++k) {
+    b_start = std::max(b_start, n.dot(from[pair.b.v[k]]));
+    b_end = std::max(b_end, n.dot(to[pair.b.v[k]]));
+  }
   return {a_start - b_start, a_end - b_end, std::min(a_start, a_end) - std::max(b_start, b_end)};
 }
 
@@ -106,7 +110,8 @@ class CandidateAxisBatch {
       : from_(from), to_(to), end_(end), use_(use) {}
   /// Adds a pair, which `use` will see under this number.
   void add(const SimplexPair& pair, std::size_t number) {
-    pairs_[size_] = pair, numbers_[size_] = number;
+    pairs_[size_] = pair;
+    numbers_[size_] = number;
     if (++size_ == CandidateAxes::width) finish();
   }
   /// Processes the pairs that are left. Must be called after the last add().

@@ -29,14 +29,18 @@ bool set_candidate(const SurfaceMotion& m, const CandidateAxes& axes, std::size_
   int chosen = CandidateAxes::between_closest;
   double best = axes.end_separation[chosen][lane];
   if (distance >= m.gap && best >= m.reach) return false;
-  for (int k = 0; k < 3; ++k)
-    candidate.closest.weights_a[k] = axes.weights_a[k][lane], candidate.closest.weights_b[k] = axes.weights_b[k][lane];
+  for (int k = 0; k < 3; ++k) {
+    candidate.closest.weights_a[k] = axes.weights_a[k][lane];
+    candidate.closest.weights_b[k] = axes.weights_b[k][lane];
+  }
   candidate.closest.difference = distance * normal(CandidateAxes::between_closest);
   // Prefer the axis of largest end separation among axes with start separation ≥ min(d, gap) / 2,
   // where d is the distance. A factor above 1/2 leaves fewer axes to choose from.
   for (int k = 0; k < CandidateAxes::between_closest; ++k)
-    if (axes.start_separation[k][lane] >= 0.5 * std::min(distance, m.gap) && axes.end_separation[k][lane] > best)
-      best = axes.end_separation[k][lane], chosen = k;
+    if (axes.start_separation[k][lane] >= 0.5 * std::min(distance, m.gap) && axes.end_separation[k][lane] > best) {
+      best = axes.end_separation[k][lane];
+      chosen = k;
+    }
   candidate.normal = normal(chosen);
   candidate.gap = std::min(m.gap, axes.start_separation[chosen][lane]);
   return true;
@@ -88,7 +92,8 @@ Pairs closest_pairs(const Pairs& pairs, const std::vector<OwnedPair>& owned, con
         while (c < count && neighbours[c].owner != p.high) ++c;
         if (c == count) {
           if (++count > neighbours.size()) neighbours.emplace_back();
-          neighbours[c].owner = p.high, neighbours[c].closest.clear();
+          neighbours[c].owner = p.high;
+          neighbours[c].closest.clear();
         }
         auto& closest = neighbours[c].closest;
         if (closest.size() == limit.most && !(entry < closest.back())) continue;
@@ -120,7 +125,8 @@ void update_broad_phase(const SurfaceMotion& m, const RepresentativeSurface& sur
     return box.grown(0.5 * m.reach);
   };
   broad_phase.update_for_share(m.triangles, box_of, 0, [&](double share) {
-    part = share_of_motion(surface.vertices, fitted, m.to, share), to = &part;
+    part = share_of_motion(surface.vertices, fitted, m.to, share);
+    to = &part;
   });
 }
 

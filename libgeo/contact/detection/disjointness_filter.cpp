@@ -70,7 +70,8 @@ HWY_INLINE Normal normal(const Corners& c) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const V plus = hn::Mul(hn::Sub(c.at[1][j], c.at[0][j]), hn::Sub(c.at[2][k], c.at[0][k]));
     const V minus = hn::Mul(hn::Sub(c.at[1][k], c.at[0][k]), hn::Sub(c.at[2][j], c.at[0][j]));
-    n.at[i] = hn::Sub(plus, minus), n.permanent[i] = hn::Add(hn::Abs(plus), hn::Abs(minus));
+    n.at[i] = hn::Sub(plus, minus);
+    n.permanent[i] = hn::Add(hn::Abs(plus), hn::Abs(minus));
   }
   return n;
 }
@@ -87,7 +88,7 @@ HWY_INLINE M on_one_side(const Corners& p, const Corners& o) {
     V det = hn::Zero(d), permanent = hn::Zero(d);
     for (int axis = 0; axis < 3; ++axis) {
       const V x = hn::Sub(o.at[k][axis], p.at[0][axis]);
-      det = hn::Add(det, hn::Mul(x, n.at[axis])),
+      det = hn::Add(det, hn::Mul(x, n.at[axis]));
       permanent = hn::Add(permanent, hn::Mul(hn::Abs(x), n.permanent[axis]));
     }
     const V bound = hn::Mul(hn::Set(d, orient3d_error), permanent);

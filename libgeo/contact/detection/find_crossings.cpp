@@ -61,7 +61,8 @@ std::vector<std::uint32_t> coincident_representatives(std::span<const std::uint3
     auto& latest = last[site[v] % last.size()];
     for (auto w = latest; w != none && result[v] == v; w = before[w])
       if (site[w] == site[v] && positions[w] == positions[v]) result[v] = result[w];
-    before[v] = latest, latest = v;
+    before[v] = latest;
+    latest = v;
   }
   return result;
 }
@@ -149,7 +150,10 @@ std::size_t CrossingCounter::count(const TriangleMesh& surface) {
   auto& [fans, tree] = *cache_;
   std::vector<Box3> boxes = boxes_of(surface.triangles, surface.vertices);
   const bool known = fans.size() == surface.vertices.size() && fans.triangles() == surface.triangles;
-  if (!known) fans = VertexFans(surface.triangles, surface.vertices.size()), tree = {};
+  if (!known) {
+    fans = VertexFans(surface.triangles, surface.vertices.size());
+    tree = {};
+  }
   tree.refit_or_rebuild(std::move(boxes), surface.triangles);
   return all_crossings(tree, fans, surface.triangles, surface.vertices,
                        coincident_representatives(surface.site, surface.vertices), surface.two_sided())

@@ -34,7 +34,10 @@ ClosestPoints closest_points(const Vec3* a, int a_size, const Vec3* b, int b_siz
   double least = std::numeric_limits<double>::infinity();
   const auto offer = [&](const Vec3& weights_a, const Vec3& weights_b) {
     const Vec3 difference = point_of(weights_a, a, a_size) - point_of(weights_b, b, b_size);
-    if (const double d = difference.squaredNorm(); d < least) least = d, best = {weights_a, weights_b, difference};
+    if (const double d = difference.squaredNorm(); d < least) {
+      least = d;
+      best = {weights_a, weights_b, difference};
+    }
   };
   for (int i = 0; i < a_size; ++i) offer(Vec3::Unit(i), closest_weights(a[i], b, b_size));
   for (int j = 0; j < b_size; ++j) offer(closest_weights(b[j], a, a_size), Vec3::Unit(j));
@@ -48,7 +51,10 @@ ClosestPoints closest_points(const Vec3* a, int a_size, const Vec3* b, int b_siz
       const double s = (uv * v.dot(w) - vv * u.dot(w)) / det, t = (uu * v.dot(w) - uv * u.dot(w)) / det;
       if (!(s > 0 && s < 1 && t > 0 && t < 1)) continue;  // an end of an edge is closest: covered by the corners
       Vec3 weights_a = Vec3::Zero(), weights_b = Vec3::Zero();
-      weights_a[i] = 1 - s, weights_a[i1] = s, weights_b[j] = 1 - t, weights_b[j1] = t;
+      weights_a[i] = 1 - s;
+      weights_a[i1] = s;
+      weights_b[j] = 1 - t;
+      weights_b[j1] = t;
       offer(weights_a, weights_b);
     }
   return best;
@@ -62,7 +68,8 @@ int disjoint_subsimplices(const Triangle& s, const Triangle& t, std::pair<Simple
   }
   if (s_own.size == 0 || t_own.size == 0) return 0;
   const Simplex s_all{{s[0], s[1], s[2]}, 3}, t_all{{t[0], t[1], t[2]}, 3};
-  pairs[0] = {s_own, t_all}, pairs[1] = {s_all, t_own};
+  pairs[0] = {s_own, t_all};
+  pairs[1] = {s_all, t_own};
   return s_own.size == 3 ? 1 : 2;
 }
 

@@ -55,7 +55,10 @@ struct RepresentativeSurface {
   /// The box that triangle t sweeps on straight paths, relative to target_centroid.
   Box3 swept_box(std::size_t t, const std::vector<Vec3>& from, const std::vector<Vec3>& to) const {
     Box3 box;
-    for (const auto v : triangles[t]) box.add(from[v] - target_centroid), box.add(to[v] - target_centroid);
+    for (const auto v : triangles[t]) {
+      box.add(from[v] - target_centroid);
+      box.add(to[v] - target_centroid);
+    }
     return box;
   }
 };

@@ -56,7 +56,8 @@ HWY_INLINE bool plane_separates(const Plane& p, const Plane& o, double start, do
                               hn::Gt(hn::Sub(at_end, hn::Set(d, p.high[1])), least_end));
     const auto under = hn::And(hn::Gt(hn::Sub(hn::Set(d, p.low[0]), at_start), least_start),
                                hn::Gt(hn::Sub(hn::Set(d, p.low[1]), at_end), least_end));
-    above &= hn::AllTrue(d, over), below &= hn::AllTrue(d, under);
+    above &= hn::AllTrue(d, over);
+    below &= hn::AllTrue(d, under);
   }
   return above | below;
 }
@@ -121,11 +122,14 @@ HWY_EXPORT(find_end_separations);
 
 void TrianglePlanes::compute(std::span<const Triangle> triangles, const std::vector<Vec3>& from,
                              const std::vector<Vec3>& to) {
-  triangles_ = triangles, to_ = &to;
+  triangles_ = triangles;
+  to_ = &to;
   // An eighth to spare: the number of triangles grows with each step of a cut. Memory that is never
   // written costs nothing.
-  if (planes_.size() < triangles.size())
-    planes_ = {}, planes_ = UninitializedArray<Plane>(triangles.size() + triangles.size() / 8);
+  if (planes_.size() < triangles.size()) {
+    planes_ = {};
+    planes_ = UninitializedArray<Plane>(triangles.size() + triangles.size() / 8);
+  }
   parallel_for(triangles.size(), 512, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       Plane& p = planes_[t];
@@ -134,11 +138,15 @@ void TrianglePlanes::compute(std::span<const Triangle> triangles, const std::vec
       if (const double length = n.norm(); length > 0) n /= length;
       const Vec3 centroid = (a + b + c) / 3;
       for (int axis = 0; axis < 3; ++axis) {
-        p.normal[axis] = n[axis], p.centroid[axis] = centroid[axis];
-        p.at[0][axis][0] = a[axis], p.at[0][axis][1] = b[axis], p.at[0][axis][2] = p.at[0][axis][3] = c[axis];
+        p.normal[axis] = n[axis];
+        p.centroid[axis] = centroid[axis];
+        p.at[0][axis][0] = a[axis];
+        p.at[0][axis][1] = b[axis];
+        p.at[0][axis][2] = p.at[0][axis][3] = c[axis];
       }
       const double x = n.dot(a), y = n.dot(b), z = n.dot(c);
-      p.low[0] = std::min({x, y, z}), p.high[0] = std::max({x, y, z});
+      p.low[0] = std::min({x, y, z});
+      p.high[0] = std::max({x, y, z});
       update_end(t);
     }
   });
@@ -148,10 +156,14 @@ void TrianglePlanes::update_end(std::size_t i) {
   Plane& p = planes_[i];
   const Vec3 n(p.normal[0], p.normal[1], p.normal[2]), &a = (*to_)[triangles_[i][0]], &b = (*to_)[triangles_[i][1]],
                                                        &c = (*to_)[triangles_[i][2]];
-  for (int axis = 0; axis < 3; ++axis)
-    p.at[1][axis][0] = a[axis], p.at[1][axis][1] = b[axis], p.at[1][axis][2] = p.at[1][axis][3] = c[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    p.at[1][axis][0] = a[axis];
+    p.at[1][axis][1] = b[axis];
+    p.at[1][axis][2] = p.at[1][axis][3] = c[axis];
+  }
   const double x = n.dot(a), y = n.dot(b), z = n.dot(c);
-  p.low[1] = std::min({x, y, z}), p.high[1] = std::max({x, y, z});
+  p.low[1] = std::min({x, y, z});
+  p.high[1] = std::max({x, y, z});
 }
 
 bool TrianglePlanes::separates(std::uint32_t i, std::uint32_t j, double start, double end) const {

@@ -19,7 +19,9 @@ VertexFans::VertexFans(const std::vector<Triangle>& triangles, std::size_t verti
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     const auto& [a, b, c] = triangles[t];
-    link_[next[a]++] = {b, c, t}, link_[next[b]++] = {c, a, t}, link_[next[c]++] = {a, b, t};
+    link_[next[a]++] = {b, c, t};
+    link_[next[b]++] = {c, a, t};
+    link_[next[c]++] = {a, b, t};
   }
   parallel_for(vertices, 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -27,7 +29,10 @@ VertexFans::VertexFans(const std::vector<Triangle>& triangles, std::size_t verti
       closed_[v] =
           links.size() >= 3 && links.size() <= largest && std::all_of(links.begin(), links.end(), [&](const Link& one) {
             std::size_t same = 0, before = 0;
-            for (const Link& other : links) same += other.from == one.from, before += other.to == one.from;
+            for (const Link& other : links) {
+              same += other.from == one.from;
+              before += other.to == one.from;
+            }
             return same == 1 && before == 1;
           });
     }

@@ -69,7 +69,9 @@ class SurfaceEmbedder {
  private:
   // `reference`: the old vertex whose nodes describe the motion of the material around v.
   void place(SurfaceVertexId v, const Vec3& at, SurfaceVertexId reference) {
-    result_.positions[v.index()] = at, placed_[v.index()] = 1, reference_[v.index()] = reference;
+    result_.positions[v.index()] = at;
+    placed_[v.index()] = 1;
+    reference_[v.index()] = reference;
   }
 
   // The old vertices of a side, in the order of its face; none if the side is new.
@@ -177,7 +179,8 @@ class SurfaceEmbedder {
           auto v = k_.surface_vertex({f, 0}, c), w = k_.surface_vertex({f, 1}, c);
           if (placed_[v.index()] == placed_[w.index()]) continue;
           if (placed_[w.index()]) std::swap(v, w);
-          place(w, result_.positions[v.index()], reference_[v.index()]), any = true;
+          place(w, result_.positions[v.index()], reference_[v.index()]);
+          any = true;
         }
     }
   }
@@ -248,8 +251,12 @@ class SurfaceEmbedder {
     for (const VisiblePoint& p : visible.points) {
       const Carrier& carrier = carrier_of(p.reference);
       const double share = p.distance / visible.reach, weight = 1 / (share * share * share * share);
-      sum += weight * (p.now + x - p.rest + carrier.at_site - displacement(p.rest, carrier.nodes)), total += weight;
-      if (p.distance < nearest) nearest = p.distance, reference = p.reference;
+      sum += weight * (p.now + x - p.rest + carrier.at_site - displacement(p.rest, carrier.nodes));
+      total += weight;
+      if (p.distance < nearest) {
+        nearest = p.distance;
+        reference = p.reference;
+      }
     }
     return {total > 0 ? Vec3(sum / total) : Vec3(x + displacement(x, nodes_near(x))), reference};
   }
@@ -274,7 +281,8 @@ class SurfaceEmbedder {
       if (!(distance < reach) || !(distance > 0)) continue;
       const Vec3 almost = x + 0.999 * (c - x);  // just before the face itself
       Box3 segment;
-      segment.add(x), segment.add(almost);
+      segment.add(x);
+      segment.add(almost);
       const auto blocks = [&](std::size_t j) {
         return j != i && segment.meets(boxes[j]) &&
                segment_meets_triangle(x, almost, corners[j][0], corners[j][1], corners[j][2]);
@@ -302,7 +310,8 @@ class SurfaceEmbedder {
       for (const FaceId f : faces)
         for (auto [t, end] = s.triangles_of(f); t < end; ++t) in[t] = 1;
     };
-    mark(in_.crack.new_faces, marked), mark(in_.crack.new_crack_faces, fresh);
+    mark(in_.crack.new_faces, marked);
+    mark(in_.crack.new_crack_faces, fresh);
     const auto rest = [&](std::uint32_t v) { return k_.point(VertexId(s.site[v])); };
     const auto gradient = [&](std::uint32_t v) {
       const auto nodes = reference_[v].valid() ? nodes_of(reference_[v]) : nodes_near(rest(v));

@@ -28,7 +28,10 @@ bool project(const SeparationConstraint& c, std::vector<Vec3>& at, std::vector<s
   for (int k = 0; k < c.b.size; ++k) most = std::max(most, c.normal.dot(at[c.b.v[k]]));
   const double plane = 0.5 * (least + most), half = 0.55 * c.separation;  // a tenth to spare
   const auto shift = [&](std::uint32_t v, double lack, double sign) {
-    if (lack > 0) at[v] += sign * lack * c.normal, moved[v] = 1;
+    if (lack > 0) {
+      at[v] += sign * lack * c.normal;
+      moved[v] = 1;
+    }
   };
   for (int k = 0; k < c.a.size; ++k) shift(c.a.v[k], plane + half - c.normal.dot(at[c.a.v[k]]), 1);
   for (int k = 0; k < c.b.size; ++k) shift(c.b.v[k], c.normal.dot(at[c.b.v[k]]) - plane + half, -1);
@@ -86,7 +89,10 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
     fewest = std::min(fewest, crossings.size());
     if (crossings.empty() || round == most_rounds || (round >= most_rounds / 2 && crossings.size() > fewest))
       return crossings;
-    if (start.empty()) start = positions, moved.assign(positions.size(), 0);
+    if (start.empty()) {
+      start = positions;
+      moved.assign(positions.size(), 0);
+    }
     for (const auto& pair : crossings)
       if (known.insert(pair).second)
         add_constraints(in, represented(pair.first), represented(pair.second),

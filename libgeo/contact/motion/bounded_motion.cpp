@@ -109,7 +109,10 @@ class CrossingFreeMotion {
     const std::vector<Vec3>* end = &next;
     const double share = near_.update_for_share(
         m_.triangles, [&](std::size_t t) { return surface_.swept_box(t, start, *end); }, box_margin * edge_,
-        [&](double s) { part = share_of_motion(surface_.vertices, start, next, s), end = &part; });
+        [&](double s) {
+          part = share_of_motion(surface_.vertices, start, next, s);
+          end = &part;
+        });
     if (share < 1) next = std::move(part);
     return share;
   }
@@ -138,12 +141,18 @@ class CrossingFreeMotion {
       const auto uncertified = certify.uncertified_pairs(near_.pairs(), changed, rigid);
       certified = uncertified.empty();
       if (certified) break;
-      if (uncertified.size() < fewest - fewest / progress_divisor) fewest = uncertified.size(), last_progress = i;
+      if (uncertified.size() < fewest - fewest / progress_divisor) {
+        fewest = uncertified.size();
+        last_progress = i;
+      }
       const std::vector<Vec3> before = next;
       if (i - last_progress < patience)
         projection.add(uncertified, next);
-      else
-        projection.make_rigid(uncertified), fewest = uncertified.size(), last_progress = i;
+      else {
+        projection.make_rigid(uncertified);
+        fewest = uncertified.size();
+        last_progress = i;
+      }
       evaluations_ += projection.project(next, evaluations_left());
       if (next == before) {
         if (!projection.make_rigid(uncertified)) break;

@@ -58,14 +58,20 @@ bool FallbackMotion::add(std::span<const std::pair<std::uint32_t, std::uint32_t>
       changed |= zones_.merge(triangles_[s], triangles_[t]);
     else
       for (const auto triangle : {s, t})
-        for (const auto v : triangles_[triangle]) changed |= !follows_[v], follows_[v] = 1;
+        for (const auto v : triangles_[triangle]) {
+          changed |= !follows_[v];
+          follows_[v] = 1;
+        }
   }
   return changed;
 }
 
 bool FallbackMotion::add_all() {
   bool changed = false;
-  for (const auto v : vertices_) changed |= !follows_[v], follows_[v] = 1;
+  for (const auto v : vertices_) {
+    changed |= !follows_[v];
+    follows_[v] = 1;
+  }
   return changed;
 }
 

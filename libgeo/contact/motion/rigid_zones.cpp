@@ -9,7 +9,10 @@ namespace geo {
 bool RigidZones::merge(const Triangle& s, const Triangle& t) {
   const bool is_new = !contain(s, t);
   for (const auto& triangle : {s, t})
-    for (const auto v : triangle) sets_.unite(s[0], v), in_zone_[v] = 1;
+    for (const auto v : triangle) {
+      sets_.unite(s[0], v);
+      in_zone_[v] = 1;
+    }
   return is_new;
 }
 

@@ -46,12 +46,14 @@ bool place_plane(const PlaneSeparatedMotion& m, const std::vector<Vec3>& at, boo
   }
   out.normal = {axes.normal[chosen][0][lane], axes.normal[chosen][1][lane], axes.normal[chosen][2][lane]};
   double low = -std::numeric_limits<double>::infinity(), high = -low, wanted_low = low, wanted_high = high;
-  for (int k = 0; k < out.a.size; ++k)
-    high = std::min(high, out.normal.dot(at[out.a.v[k]])),
+  for (int k = 0; k < out.a.size; ++k) {
+    high = std::min(high, out.normal.dot(at[out.a.v[k]]));
     wanted_high = std::min(wanted_high, out.normal.dot(m.to[out.a.v[k]]));
-  for (int k = 0; k < out.b.size; ++k)
-    low = std::max(low, out.normal.dot(at[out.b.v[k]])),
+  }
+  for (int k = 0; k < out.b.size; ++k) {
+    low = std::max(low, out.normal.dot(at[out.b.v[k]]));
     wanted_low = std::max(wanted_low, out.normal.dot(m.to[out.b.v[k]]));
+  }
   const double free = high - low;
   // Adjacent triangles may become thinner as the body is squeezed, but never flat. Sheets in
   // contact keep their distance.
@@ -74,8 +76,11 @@ Vec3 moved_vertex(const Vec3& from, const Vec3& to, double limit, std::span<cons
   for (int round = 0; round < most_rounds; ++round) {
     bool inside = true;
     for (const auto& [p, side] : planes)
-      if (const double lack = p->half * (1 + margin) - side * (p->normal.dot(x) - p->at); lack > 0.5 * margin * p->half)
-        x += side * lack * p->normal, inside = false;
+      if (const double lack = p->half * (1 + margin) - side * (p->normal.dot(x) - p->at);
+          lack > 0.5 * margin * p->half) {
+        x += side * lack * p->normal;
+        inside = false;
+      }
     if (inside) break;
   }
   limit_move();
@@ -99,7 +104,10 @@ std::vector<std::vector<SeparatingPlane>> find_planes(const PlaneSeparatedMotion
   const TrianglePlanes triangle_planes(m.triangles, at, at);
   parallel_for(boxes.size(), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      for (const auto v : m.triangles[t]) boxes[t].add(at[v]), farthest[t] = std::max(farthest[t], m.limit[v]);
+      for (const auto v : m.triangles[t]) {
+        boxes[t].add(at[v]);
+        farthest[t] = std::max(farthest[t], m.limit[v]);
+      }
       boxes[t] = boxes[t].grown(farthest[t] + 0.5 * m.gap);
     }
   });

@@ -46,8 +46,11 @@ void SeparationProjection::choose_axis(Constraint& c, const CandidateAxes& axes,
   for (const auto& start : axes.start_separation) largest = std::max(largest, start[lane]);
   // max end separation, subject to start separation ≥ min(largest, gap) / 2.
   const auto consider = [&](const Vec3& axis, double start, double end) {
-    if (start > 0 && start >= 0.5 * std::min(largest, gap_) && end > best)
-      best = end, c.axis = axis, c.separation = std::min(gap_, share * start);
+    if (start > 0 && start >= 0.5 * std::min(largest, gap_) && end > best) {
+      best = end;
+      c.axis = axis;
+      c.separation = std::min(gap_, share * start);
+    }
     return false;  // consider all
   };
   for (int k = 0; k < CandidateAxes::count; ++k)
@@ -105,7 +108,10 @@ std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t m
   std::iota(active.begin(), active.end(), 0u);
   std::vector<std::uint8_t> becomes_active(constraints_.size(), 0), has_moved(next.size(), 0);
   const auto mark_moved = [&](std::uint32_t v) {
-    if (!has_moved[v]) has_moved[v] = 1, moved.push_back(v);
+    if (!has_moved[v]) {
+      has_moved[v] = 1;
+      moved.push_back(v);
+    }
   };
   std::size_t evaluations = 0;
   for (int sweep = 0; sweep < max_sweeps && !active.empty() && evaluations < most_evaluations; ++sweep) {
@@ -114,7 +120,10 @@ std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t m
       if (rigid[i]) continue;
       const Constraint& c = constraints_[i];
       double at_a[3], at_b[3];  // of vertices along the axis
-      for (int k = 0; k < 3; ++k) at_a[k] = c.axis.dot(next[c.a.v[k]]), at_b[k] = c.axis.dot(next[c.b.v[k]]);
+      for (int k = 0; k < 3; ++k) {
+        at_a[k] = c.axis.dot(next[c.a.v[k]]);
+        at_b[k] = c.axis.dot(next[c.b.v[k]]);
+      }
       const double low = std::min({at_a[0], at_a[1], at_a[2]}), high = std::max({at_b[0], at_b[1], at_b[2]});
       if (low - high >= c.separation) continue;
       const double middle = 0.5 * (low + high), half = 0.5 * (1 + margin) * c.separation;
@@ -136,10 +145,14 @@ std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t m
       has_moved[v] = 0;
       for (auto j = of_vertex.first[v]; j < of_vertex.first[v + 1]; ++j) becomes_active[of_vertex.constraint[j]] = 1;
     }
-    moved.clear(), active.resize(becomes_active.size());
+    moved.clear();
+    active.resize(becomes_active.size());
     std::size_t count = 0;  // compacted without branches
-    for (std::uint32_t i = 0; i < becomes_active.size(); ++i)
-      active[count] = i, count += becomes_active[i], becomes_active[i] = 0;
+    for (std::uint32_t i = 0; i < becomes_active.size(); ++i) {
+      active[count] = i;
+      count += becomes_active[i];
+      becomes_active[i] = 0;
+    }
     active.resize(count);
   }
   return evaluations;

@@ -52,12 +52,16 @@ std::vector<std::uint8_t> SmoothField::fill(const std::vector<Vec3>& at, const s
         for (std::size_t k = 0; k < 3; ++k) {
           const std::size_t g = index(w.first[0] + i, w.first[1] + j, w.first[2] + k);
           const double weight = w.w[0][i] * w.w[1][j] * w.w[2][k];
-          total[g] += weight, value_[g] += weight * motion[v];
+          total[g] += weight;
+          value_[g] += weight * motion[v];
         }
   }
   std::vector<std::uint8_t> filled(value_.size());
   for (std::size_t g = 0; g < value_.size(); ++g)
-    if (total[g] > 0) value_[g] /= total[g], filled[g] = 1;
+    if (total[g] > 0) {
+      value_[g] /= total[g];
+      filled[g] = 1;
+    }
   return filled;
 }
 
@@ -71,9 +75,18 @@ void SmoothField::extend(std::vector<std::uint8_t>& filled) {
       if (before[g]) return;
       int count = 0;
       Vec3 sum = Vec3::Zero();
-      if (at[axis] > 0 && before[g - step]) sum += value_[g - step], ++count;
-      if (at[axis] + 1 < size_[axis] && before[g + step]) sum += value_[g + step], ++count;
-      if (count > 0) value_[g] = sum / count, filled[g] = 1;
+      if (at[axis] > 0 && before[g - step]) {
+        sum += value_[g - step];
+        ++count;
+      }
+      if (at[axis] + 1 < size_[axis] && before[g + step]) {
+        sum += value_[g + step];
+        ++count;
+      }
+      if (count > 0) {
+        value_[g] = sum / count;
+        filled[g] = 1;
+      }
     });
   }
 }
@@ -113,7 +126,9 @@ SmoothField::Weights SmoothField::weights(const Vec3& p) const {
     const double t = (p[k] - origin_[k]) / cell_, nearest = std::clamp(std::floor(t + 0.5), 1.0, double(size_[k]) - 2);
     const double f = std::clamp(t - nearest, -0.5, 0.5);
     w.first[k] = static_cast<std::size_t>(nearest) - 1;
-    w.w[k][0] = 0.5 * (0.5 - f) * (0.5 - f), w.w[k][1] = 0.75 - f * f, w.w[k][2] = 0.5 * (0.5 + f) * (0.5 + f);
+    w.w[k][0] = 0.5 * (0.5 - f) * (0.5 - f);
+    w.w[k][1] = 0.75 - f * f;
+    w.w[k][2] = 0.5 * (0.5 + f) * (0.5 + f);
   }
   return w;
 }

@@ -42,7 +42,10 @@ class StraightMotion {
 
   void run() {
     for (const auto& t : triangles_)
-      for (const auto v : t) share_[v] = to_[v] != start_[v], moves_[v] = share_[v] > 0;
+      for (const auto v : t) {
+        share_[v] = to_[v] != start_[v];
+        moves_[v] = share_[v] > 0;
+      }
     for (int trial = 0;; ++trial) {
       place_vertices();
       judge_pairs();
@@ -62,9 +65,10 @@ class StraightMotion {
         at_[v] = share_[v] == 1 ? to_[v] : Vec3(start_[v] + share_[v] * (to_[v] - start_[v]));
     parallel_for(triangles_.size(), 1024, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
-        if (changed_[t])
-          boxes_[t] = swept_box(triangles_[t], start_, at_).grown(0.5 * gap_),
+        if (changed_[t]) {
+          boxes_[t] = swept_box(triangles_[t], start_, at_).grown(0.5 * gap_);
           moving_[t] = any_vertex(triangles_[t], moves_);
+        }
     });
   }
 
@@ -87,7 +91,8 @@ class StraightMotion {
         for (int k = 0; k < CandidateAxes::count; ++k) {
           const PairSeparation p{axes.start_separation[k][lane], axes.end_separation[k][lane],
                                  axes.swept_separation[k][lane]};
-          any |= is_separated(p, number % 2 != 0), any_always |= is_always_separated(p, number % 2 != 0);
+          any |= is_separated(p, number % 2 != 0);
+          any_always |= is_always_separated(p, number % 2 != 0);
         }
         Verdict& verdict = verdict_[number / 2];
         if (!any)
@@ -135,7 +140,10 @@ class StraightMotion {
   void shorten_moves(int trial) {
     constexpr int max_halvings = 2;  // then the vertex stays: at most 4 trials for it
     for (std::size_t v = 0; v < at_.size(); ++v)
-      if (blocked_[v]) share_[v] = trial < max_halvings ? 0.5 * share_[v] : 0, moves_[v] = share_[v] > 0;
+      if (blocked_[v]) {
+        share_[v] = trial < max_halvings ? 0.5 * share_[v] : 0;
+        moves_[v] = share_[v] > 0;
+      }
     for (std::size_t t = 0; t < triangles_.size(); ++t) changed_[t] = any_vertex(triangles_[t], blocked_);
   }
 

@@ -28,13 +28,19 @@ Lagging find_lagging(const std::vector<Triangle>& triangles, const std::vector<V
   std::vector<Box3> boxes(triangles.size());
   for (const auto& t : triangles)
     for (const auto v : t)
-      if (const double error = (to[v] - at[v]).norm(); error > negligible * edge)
-        result.limit[v] = std::min(farthest * edge, error), result.target[v] = to[v];
+      if (const double error = (to[v] - at[v]).norm(); error > negligible * edge) {
+        result.limit[v] = std::min(farthest * edge, error);
+        result.target[v] = to[v];
+      }
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     double longest = 0;
-    for (const auto v : triangles[t])
-      longest = std::max(longest, result.limit[v]), boxes[t].add(at[v]), boxes[t].add(result.target[v]);
-    moving[t] = longest > 0, boxes[t] = boxes[t].grown((straight ? 0 : longest) + 0.5 * gap);
+    for (const auto v : triangles[t]) {
+      longest = std::max(longest, result.limit[v]);
+      boxes[t].add(at[v]);
+      boxes[t].add(result.target[v]);
+    }
+    moving[t] = longest > 0;
+    boxes[t] = boxes[t].grown((straight ? 0 : longest) + 0.5 * gap);
   }
   if (std::count(moving.begin(), moving.end(), 1) > 0) result.pairs = overlapping_pairs(std::move(boxes), &moving);
   return result;

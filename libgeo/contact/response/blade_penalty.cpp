@@ -58,7 +58,10 @@ void BladePenalty::add(std::size_t blade, const BladeWedge& wedge, const BladeNo
   const Vec3& back = wedge.back;
   const double width = back.norm(), slope = 0.5 * wedge.thickness / width, back_squared = width * width;
   Box3 box;
-  for (const Vec3& p : wedge.edge) box.add(p), box.add(p + back);
+  for (const Vec3& p : wedge.edge) {
+    box.add(p);
+    box.add(p + back);
+  }
   const std::vector<Flank> flanks = flanks_of(wedge);
   for (std::size_t i = 0; i < nodes.position.size(); ++i) {
     const Vec3 world = nodes.position[i] + nodes.displacement[i];

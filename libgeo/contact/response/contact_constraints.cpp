@@ -15,7 +15,10 @@ namespace {
 SurfacePoint surface_point(const Simplex& s, const Vec3& weights) {
   SurfacePoint point{{}, {}, 0};
   for (int k = 0; k < s.size; ++k)
-    if (weights[k] > 0) point.vertex[point.size] = s.v[k], point.weight[point.size++] = weights[k];
+    if (weights[k] > 0) {
+      point.vertex[point.size] = s.v[k];
+      point.weight[point.size++] = weights[k];
+    }
   return point;
 }
 
@@ -25,8 +28,10 @@ using PointPairKey = std::array<std::uint32_t, 6>;
 PointPairKey key_of(const SurfacePoint& a, const SurfacePoint& b) {
   PointPairKey key;
   key.fill(~0u);
-  std::copy(a.vertex, a.vertex + a.size, key.begin()), std::copy(b.vertex, b.vertex + b.size, key.begin() + 3);
-  std::sort(key.begin(), key.begin() + 3), std::sort(key.begin() + 3, key.end());
+  std::copy(a.vertex, a.vertex + a.size, key.begin());
+  std::copy(b.vertex, b.vertex + b.size, key.begin() + 3);
+  std::sort(key.begin(), key.begin() + 3);
+  std::sort(key.begin() + 3, key.end());
   if (std::lexicographical_compare(key.begin() + 3, key.end(), key.begin(), key.begin() + 3))
     std::rotate(key.begin(), key.begin() + 3, key.end());
   return key;

@@ -32,7 +32,9 @@ Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
 
 void ObstaclePenalty::find_contacts(const SurfaceWeights& weights, std::span<const Vec3> surface, double reach,
                                     double slip_regularisation, std::span<const double> pressure_factor) {
-  slip_regularisation_ = slip_regularisation, sum_ = {}, substep_begin_ = substep_end_ = 0;
+  slip_regularisation_ = slip_regularisation;
+  sum_ = {};
+  substep_begin_ = substep_end_ = 0;
   const Eigen::Isometry3d to_local = from_.inverse();
   std::vector<std::uint8_t> reaches(weights.size(), 0);
   parallel_for(reaches.size(), 256, [&](std::size_t begin, std::size_t end) {
@@ -48,8 +50,10 @@ void ObstaclePenalty::find_contacts(const SurfaceWeights& weights, std::span<con
       const auto v = vertices[i];
       Contact& c = contacts_[i];
       c = {};
-      c.weights = weights.stencil(v), c.weight_norm = weights.norm(v);
-      c.rest = weights.rest(v) + weights.rotated(v), c.displacement = surface[v] - c.rest;
+      c.weights = weights.stencil(v);
+      c.weight_norm = weights.norm(v);
+      c.rest = weights.rest(v) + weights.rotated(v);
+      c.displacement = surface[v] - c.rest;
       const double factor = pressure_factor.empty() ? 1 : pressure_factor[weights.heaviest()[v]];
       c.stiffness = options_.pressure * factor * weights.area(v);
     }
@@ -57,12 +61,15 @@ void ObstaclePenalty::find_contacts(const SurfaceWeights& weights, std::span<con
 }
 
 void ObstaclePenalty::begin_substep(const std::vector<Vec3>& u, double from, double to) {
-  if (from <= 0)
-    sum_ = {}, impulses_ = false;
-  else if (from == substep_end_ && !impulses_)
+  if (from <= 0) {
+    sum_ = {};
+    impulses_ = false;
+  } else if (from == substep_end_ && !impulses_)
     add_reaction(u, sum_);
   const Eigen::Isometry3d start = pose(from), to_local = start.inverse();
-  substep_begin_ = from, substep_end_ = to, now_ = pose(to);
+  substep_begin_ = from;
+  substep_end_ = to;
+  now_ = pose(to);
   const auto begin_contact = [&](std::size_t k, const Vec3& displacement) {
     Contact& c = contacts_[k];
     c.start = c.rest + displacement;
@@ -158,7 +165,10 @@ void ObstaclePenalty::add_reaction(const std::vector<Vec3>& u, Reaction& sum) co
     const Vec3 f = share * derivatives(k, d).force;
     on_body[k] = {f, (contacts_[k].rest + d - now_.translation()).cross(f)};
   });
-  for (const Reaction& r : on_body) sum.force -= r.force, sum.torque -= r.torque;
+  for (const Reaction& r : on_body) {
+    sum.force -= r.force;
+    sum.torque -= r.torque;
+  }
 }
 
 ObstaclePenalty::Reaction ObstaclePenalty::reaction(const std::vector<Vec3>& u) const {

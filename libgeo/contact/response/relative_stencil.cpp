@@ -14,7 +14,8 @@ RelativeStencilBuilder::RelativeStencilBuilder(const SurfaceWeights& weights, co
 RelativeStencil RelativeStencilBuilder::make(const SurfacePoint& a, const SurfacePoint& b) {
   RelativeStencil stencil;
   nodes_.clear();
-  add(a, 0), add(b, 1);
+  add(a, 0);
+  add(b, 1);
   stencil.entries.reserve(nodes_.size());
   for (const auto j : nodes_) {
     const auto [weight_a, weight_b] = sum_[j];
@@ -23,7 +24,8 @@ RelativeStencil RelativeStencilBuilder::make(const SurfacePoint& a, const Surfac
     stencil.inverse_mass += weight * weight * inverse_mass_[j];
     stencil.inverse_mass_a += weight_a * weight_a * inverse_mass_[j];
     stencil.inverse_mass_b += weight_b * weight_b * inverse_mass_[j];
-    sum_[j] = {0, 0}, in_use_[j] = 0;
+    sum_[j] = {0, 0};
+    in_use_[j] = 0;
   }
   return stencil;
 }
@@ -33,7 +35,10 @@ void RelativeStencilBuilder::add(const SurfacePoint& point, std::size_t which) {
     const auto coincident = stands_for_[point.vertex[k]];
     for (const auto v : coincident)
       for (const auto& e : weights_.stencil(v)) {
-        if (!in_use_[e.node]) nodes_.push_back(e.node), in_use_[e.node] = 1;
+        if (!in_use_[e.node]) {
+          nodes_.push_back(e.node);
+          in_use_[e.node] = 1;
+        }
         sum_[e.node][which] += point.weight[k] / double(coincident.size()) * e.weight;
       }
   }

@@ -42,8 +42,10 @@ Potential::Derivatives SelfContactPenalty::derivatives(std::size_t k, const Vec3
   const Vec3 moved = d - c.start;
   const double along = n.dot(moved), depth = std::max(0.0, c.depth - along);
   Derivatives result;
-  if (depth > 0)
-    result.force = penalty_force(c.stiffness, depth, n), result.hessian = plane_penalty_hessian(c.stiffness, n);
+  if (depth > 0) {
+    result.force = penalty_force(c.stiffness, depth, n);
+    result.hessian = plane_penalty_hessian(c.stiffness, n);
+  }
   if (const LaggedFriction f = friction(c); f.acts())
     f.add(moved - along * n, n * n.transpose(), c.friction.last_slip, result.force, result.hessian);
   return result;

@@ -24,7 +24,11 @@ class SelfContactPenalty : public Potential {
   /// A potential without contacts.
   explicit SelfContactPenalty(const SelfContactPenaltyOptions& options) : options_(options) {}
   /// Removes all contacts; their memory is kept.
-  void restart(const SelfContactPenaltyOptions& options) { options_ = options, contacts_.clear(), entries_.clear(); }
+  void restart(const SelfContactPenaltyOptions& options) {
+    options_ = options;
+    contacts_.clear();
+    entries_.clear();
+  }
 
   /// Adds a contact. `normal`: unit, from point b of the stencil to point a. `depth`: of
   /// penetration at displacements u, where the step begins, model units; negative: a distance.

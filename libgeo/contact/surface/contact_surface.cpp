@@ -17,9 +17,10 @@ Triangle triangle_of(const Complex& complex, std::uint32_t side) {
 
 void add_sides(const Complex& complex, FaceId f, ContactSurface& s) {
   for (int which = 0; which < 2; ++which)
-    if (complex.has({f, which}))
-      s.side.push_back(2 * f.value + static_cast<std::uint32_t>(which)),
-          s.triangles.push_back(triangle_of(complex, s.side.back()));
+    if (complex.has({f, which})) {
+      s.side.push_back(2 * f.value + static_cast<std::uint32_t>(which));
+      s.triangles.push_back(triangle_of(complex, s.side.back()));
+    }
 }
 
 void set_sites(const Complex& complex, ContactSurface& s) {
@@ -53,7 +54,8 @@ ContactSurface contact_surface(const Complex& complex) {
 
 ContactSurface updated_contact_surface(const ContactSurface& before, const Complex& after, const CrackDelta& crack) {
   ContactSurface s;
-  s.triangles.reserve(before.triangles.size() + 2 * crack.new_faces.size()), s.side.reserve(s.triangles.capacity());
+  s.triangles.reserve(before.triangles.size() + 2 * crack.new_faces.size());
+  s.side.reserve(s.triangles.capacity());
   std::size_t next = 0;  // triangles of `before` up to this one are copied or removed
   const auto copy_until = [&](std::size_t last) {
     const auto from = static_cast<std::ptrdiff_t>(next), to = static_cast<std::ptrdiff_t>(last);
@@ -62,7 +64,8 @@ ContactSurface updated_contact_surface(const ContactSurface& before, const Compl
   };
   for (const FaceId f : ascending(crack.removed_faces)) {
     const auto [first, end] = before.triangles_of(f);
-    copy_until(first), next = end;
+    copy_until(first);
+    next = end;
   }
   copy_until(before.side.size());
   for (const FaceId f : ascending(crack.new_faces)) add_sides(after, f, s);  // new faces have the highest numbers
@@ -124,8 +127,10 @@ std::vector<Vec3> coincident_side_normals(const ContactSurface& surface, std::sp
         representative[s[2]] != representative[o[1]])
       continue;
     const Vec3 n = (p[s[1]] - p[s[0]]).cross(p[s[2]] - p[s[0]]);
-    for (int k = 0; k < 3; ++k)
-      normals[s[static_cast<std::size_t>(k)]] += n, normals[o[static_cast<std::size_t>(k)]] -= n;
+    for (int k = 0; k < 3; ++k) {
+      normals[s[static_cast<std::size_t>(k)]] += n;
+      normals[o[static_cast<std::size_t>(k)]] -= n;
+    }
   }
   return normals;
 }

@@ -39,8 +39,10 @@ const Coincidence& MovingSurface::coincidence() {
 }
 
 void MovingSurface::replace(ContactSurface topology, std::vector<Vec3> positions) {
-  topology_ = std::move(topology), positions_ = std::move(positions);
-  fans_.reset(), coincidence_.reset();
+  topology_ = std::move(topology);
+  positions_ = std::move(positions);
+  fans_.reset();
+  coincidence_.reset();
 }
 
 }  // namespace geo

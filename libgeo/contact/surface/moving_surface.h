@@ -41,7 +41,10 @@ class MovingSurface {
   const Coincidence& coincidence();
 
   /// New positions of the same vertices.
-  void move_to(std::vector<Vec3> positions) { positions_ = std::move(positions), coincidence_.reset(); }
+  void move_to(std::vector<Vec3> positions) {
+    positions_ = std::move(positions);
+    coincidence_.reset();
+  }
   /// Another surface, after a crack step.
   void replace(ContactSurface topology, std::vector<Vec3> positions);
 

@@ -66,7 +66,10 @@ class SheetOpener {
     for (std::size_t t = 0; t < boxes.size(); ++t) {
       const auto& [a, b, c] = surface_.triangles[t];
       boxes[t] = box_of(positions_[a], positions_[b], positions_[c]).grown(0.5 * gap_);
-      if (moving[a] || moving[b] || moving[c]) region.add(boxes[t]), marked[t] = 1;
+      if (moving[a] || moving[b] || moving[c]) {
+        region.add(boxes[t]);
+        marked[t] = 1;
+      }
     }
     for (Box3& box : boxes)
       if (!box.meets(region)) box = Box3();
@@ -82,8 +85,10 @@ class SheetOpener {
     std::vector<std::uint8_t> moved(positions_.size(), 0), marked(surface_.triangles.size(), 0),
         crosses(positions_.size(), 0);
     for (const auto v : opening)
-      for (const auto c : coincident_[v])
-        positions_[c] -= step * (trial % 2 == 0 ? inward_[c] : normals_[c]).normalized(), moved[c] = 1;
+      for (const auto c : coincident_[v]) {
+        positions_[c] -= step * (trial % 2 == 0 ? inward_[c] : normals_[c]).normalized();
+        moved[c] = 1;
+      }
     for (;;) {
       for (std::size_t t = 0; t < marked.size(); ++t)
         marked[t] =
@@ -97,8 +102,12 @@ class SheetOpener {
       bool closed_any = false;
       for (const auto v : opening)
         if (std::any_of(coincident_[v].begin(), coincident_[v].end(), [&](auto c) { return crosses[c] && moved[c]; })) {
-          for (const auto c : coincident_[v]) positions_[c] = closed_[v], moved[c] = 0;
-          refused.push_back(v), closed_any = true;
+          for (const auto c : coincident_[v]) {
+            positions_[c] = closed_[v];
+            moved[c] = 0;
+          }
+          refused.push_back(v);
+          closed_any = true;
         }
       if (!closed_any) break;
     }
@@ -124,7 +133,10 @@ class SheetOpener {
         }
         if (!any_crosses(pairs, representative)) return false;
       }
-      for (const auto c : coincident_[v]) positions_[c] = closed_[v], representative[c] = v;
+      for (const auto c : coincident_[v]) {
+        positions_[c] = closed_[v];
+        representative[c] = v;
+      }
       return true;
     });
   }

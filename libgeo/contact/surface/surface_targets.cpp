@@ -34,7 +34,8 @@ const std::vector<Vec3>& SurfaceTargetCache::at(const SurfaceWeights& weights, c
   } else {
     targets_ = surface_targets(weights, u);
   }
-  displacement_ = u, stale_.clear();
+  displacement_ = u;
+  stale_.clear();
   return targets_;
 }
 

@@ -21,15 +21,19 @@ class StencilSums {
  public:
   // For this number of nodes.
   void resize(std::size_t nodes) {
-    weight_.resize(std::max(weight_.size(), nodes), 0), used_.resize(std::max(used_.size(), (nodes + 63) / 64), 0);
+    weight_.resize(std::max(weight_.size(), nodes), 0);
+    used_.resize(std::max(used_.size(), (nodes + 63) / 64), 0);
     // A stencil was abandoned if memory for it could not be allocated.
-    if (std::any_of(used_.begin(), used_.end(), [](auto bits) { return bits != 0; }))
-      std::fill(used_.begin(), used_.end(), 0), std::fill(weight_.begin(), weight_.end(), 0.0);
+    if (std::any_of(used_.begin(), used_.end(), [](auto bits) { return bits != 0; })) {
+      std::fill(used_.begin(), used_.end(), 0);
+      std::fill(weight_.begin(), weight_.end(), 0.0);
+    }
     start();
   }
   void add(std::uint32_t j, double w) {
     const std::size_t word = j / 64;
-    low_ = std::min(low_, word), high_ = std::max(high_, word);
+    low_ = std::min(low_, word);
+    high_ = std::max(high_, word);
     used_[word] |= std::uint64_t(1) << j % 64;
     weight_[j] += w;
   }
@@ -49,7 +53,10 @@ class StencilSums {
   }
 
  private:
-  void start() { low_ = used_.size(), high_ = 0; }
+  void start() {
+    low_ = used_.size();
+    high_ = 0;
+  }
 
   std::vector<double> weight_;       // per node
   std::vector<std::uint64_t> used_;  // one bit a node
@@ -59,7 +66,13 @@ class StencilSums {
 }  // namespace
 
 void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
-  stencils_.clear(), heaviest_.clear(), rest_.clear(), norm_.clear(), area_.clear(), arms_.clear(), changed_.clear();
+  stencils_.clear();
+  heaviest_.clear();
+  rest_.clear();
+  norm_.clear();
+  area_.clear();
+  arms_.clear();
+  changed_.clear();
   resolution_ = Resolution(body.surface.extent().diagonal());
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
@@ -123,8 +136,11 @@ std::vector<Vec3> SurfaceWeights::interpolate(std::span<const std::uint32_t> ver
 void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices) {
   const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   stencils_.resize(body.surface.surface_vertex_count());
-  heaviest_.resize(stencils_.size(), ~0u), norm_.resize(stencils_.size(), 0), area_.resize(stencils_.size(), 0);
-  arms_.resize(stencils_.size()), rest_.resize(stencils_.size(), none);
+  heaviest_.resize(stencils_.size(), ~0u);
+  norm_.resize(stencils_.size(), 0);
+  area_.resize(stencils_.size(), 0);
+  arms_.resize(stencils_.size());
+  rest_.resize(stencils_.size(), none);
   const NodalGradientOperator& mls = solid.discretisation().mls;
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
@@ -134,7 +150,11 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
       const std::uint32_t v = vertices[k];
       const SurfaceVertexId id(v);
       auto& stencil = stencils_[v];
-      stencil.clear(), heaviest_[v] = ~0u, norm_[v] = area_[v] = 0, arms_[v].clear(), rest_[v] = none;
+      stencil.clear();
+      heaviest_[v] = ~0u;
+      norm_[v] = area_[v] = 0;
+      arms_[v].clear();
+      rest_[v] = none;
       if (!body.surface.alive(id)) continue;
       const Vec3& x = rest_[v] = body.surface.point(body.surface.site(id));
       area_[v] = vertex_area(body.surface, id);
@@ -143,7 +163,10 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
       // Kernel weights replace distances. If all vanish, the first node carries the vertex.
       double total = 0;
       for (auto& [i, d] : bound) total += d = kernel(d / body.nodes.radius[i.index()], 1.0);
-      if (!(total > 0)) bound.resize(1), bound[0].second = total = 1;
+      if (!(total > 0)) {
+        bound.resize(1);
+        bound[0].second = total = 1;
+      }
       for (const auto& [i, w] : bound) {
         const NodalGradientOperator::Node& node = mls[i.index()];
         const Vec3 arm = w / total * (x - body.nodes.position[i.index()]);

@@ -271,7 +271,10 @@ class Complex::FacesAt {
     /// The face.
     FaceId operator*() const { return FaceId(at_ / 3); }
     /// To the next face.
-    iterator& operator++() { return at_ = next_[at_], *this; }
+    iterator& operator++() {
+      at_ = next_[at_];
+      return *this;
+    }
     /// To the next face; returns where it was.
     iterator operator++(int) {
       const auto old = *this;

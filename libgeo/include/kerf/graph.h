@@ -177,7 +177,8 @@ class VisibilityGraph::Edges {
     NodeId operator*() const { return NodeId(row_.to[at_]); }
     /// To the next edge.
     Iterator& operator++() {
-      ++at_, skip();
+      ++at_;
+      skip();
       return *this;
     }
     /// At different entries of one row?
@@ -227,7 +228,8 @@ class VisibilityGraph::Neighbors {
     /// To the next neighbour.
     Iterator& operator++() {
       path_ += AdjacencyRow::has_path(row_.bits[at_]);
-      ++at_, skip();
+      ++at_;
+      skip();
       return *this;
     }
     /// At different entries of one row?

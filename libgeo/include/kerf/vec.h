@@ -68,9 +68,15 @@ struct Box3 {
   Vec3 hi = Vec3::Constant(-std::numeric_limits<double>::infinity());  ///< upper corner
 
   /// Extends the box to contain p.
-  void add(const Vec3& p) { lo = lo.cwiseMin(p), hi = hi.cwiseMax(p); }
+  void add(const Vec3& p) {
+    lo = lo.cwiseMin(p);
+    hi = hi.cwiseMax(p);
+  }
   /// Extends the box to contain b.
-  void add(const Box3& b) { lo = lo.cwiseMin(b.lo), hi = hi.cwiseMax(b.hi); }
+  void add(const Box3& b) {
+    lo = lo.cwiseMin(b.lo);
+    hi = hi.cwiseMax(b.hi);
+  }
   /// Whether the box contains no point.
   bool empty() const { return (lo.array() > hi.array()).any(); }
   /// Whether the boxes have a common point; touching counts. An empty box meets none.

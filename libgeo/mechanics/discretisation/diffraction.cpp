@@ -45,13 +45,17 @@ const Path* first_clear(const Vec3& x, const Vec3& node, std::span<const Path> p
   std::vector<std::uint8_t> hidden;
   for (std::size_t begin = 0, count = 4; begin < paths.size(); begin += count, count = 32) {
     const auto some = paths.subspan(begin, std::min(count, paths.size() - begin));
-    bends.clear(), open.clear();
+    bends.clear();
+    open.clear();
     for (const Path& p : some) bends.push_back(p.bend);
     hidden.assign(some.size(), 0);
     faces.blocks(x, bends, hidden.data());
     bends.clear();
     for (std::size_t k = 0; k < some.size(); ++k)
-      if (!hidden[k]) bends.push_back(some[k].bend), open.push_back(&some[k]);
+      if (!hidden[k]) {
+        bends.push_back(some[k].bend);
+        open.push_back(&some[k]);
+      }
     hidden.assign(open.size(), 0);
     faces.blocks(node, bends, hidden.data());
     for (std::size_t k = 0; k < open.size(); ++k)

@@ -23,8 +23,9 @@ void ElasticBlock::evaluate_range(const PointBlock& block, const MaterialRange& 
     return elastic_response(constants, points, scratch_.volume, used, scratch_.gradient, scratch_.energy,
                             elastic_gradient);
   auto& mixed = scratch_.mixed;
-  mixed.gradient.resize(block.points.size()), mixed.energy.resize(scratch_.energy.size()),
-      mixed.elastic_gradient.resize(block.points.size());
+  mixed.gradient.resize(block.points.size());
+  mixed.energy.resize(scratch_.energy.size());
+  mixed.elastic_gradient.resize(block.points.size());
   for (int c = 0; c < 3; ++c)
     std::copy_n(&scratch_.gradient.column[c][4 * range.begin], 4 * (range.end - range.begin),
                 &mixed.gradient.column[c][4 * range.begin]);

@@ -71,8 +71,10 @@ class Changes {
     std::vector<std::uint32_t> nodes;
     ends.clear();
     for (const auto j : nodes_near())
-      if (const Vec3& x = body.nodes.position[j]; (x - p.position).norm() < factor * body.nodes.radius[j])
-        nodes.push_back(j), ends.push_back(x);
+      if (const Vec3& x = body.nodes.position[j]; (x - p.position).norm() < factor * body.nodes.radius[j]) {
+        nodes.push_back(j);
+        ends.push_back(x);
+      }
     if (is_touched(p.position, ends)) return true;
     if (!p.occluded) return false;
     forget_settled(block, point, nodes);
@@ -114,12 +116,15 @@ class Changes {
 
 // Each point has a quarter of its cell's volume.
 void set_volumes(std::span<const QuadratureCell> cells, std::vector<MaterialPoint>& points) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i].volume = 0.25 * cells[i / 4].volume, points[i].unscaled_volume = 0.25 * cells[i / 4].unscaled_volume;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].volume = 0.25 * cells[i / 4].volume;
+    points[i].unscaled_volume = 0.25 * cells[i / 4].unscaled_volume;
+  }
 }
 
 void set_position(const Body& body, const Vec3& intended, MaterialPoint& point) {
-  point.position = moved_off_faces(body, intended), point.influence_radius = (point.position - intended).norm();
+  point.position = moved_off_faces(body, intended);
+  point.influence_radius = (point.position - intended).norm();
 }
 
 // Per cell, the index of the same cell before, or ~0u (none). Both lists are in Morton order, then
@@ -143,7 +148,8 @@ struct PointGroup {
     for (const auto& [block, point, shape] : points) {
       if (!block) continue;
       const MaterialPoint& p = block->points[point];
-      box.add(p.position), radius = std::max(radius, p.influence_radius);
+      box.add(p.position);
+      radius = std::max(radius, p.influence_radius);
       factor = std::max(factor, support_factors[p.widenings]);
     }
   }
@@ -209,7 +215,8 @@ struct BlockUpdate {
       }
     }
     if (same_block != none && stale.empty()) return;
-    points.resize(sources.size()), shapes.resize(stale.size());
+    points.resize(sources.size());
+    shapes.resize(stale.size());
     for (std::size_t i = 0; i < sources.size(); ++i)
       if (sources[i].block) points[i] = sources[i].block->points[sources[i].point];
     for (std::size_t s = 0; s < stale.size(); ++s) {
@@ -264,8 +271,10 @@ Galerkin::Galerkin(const Body& body, std::span<const std::uint32_t> component, M
       std::vector<MaterialPoint> all(4 * cells.size());
       std::vector<ShapeGradients> shapes(all.size());
       std::vector<SupportTask> tasks;
-      for (std::size_t i = 0; i < all.size(); ++i)
-        set_position(body, cells[i / 4].point[i % 4], all[i]), tasks.push_back({&all[i], &shapes[i]});
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        set_position(body, cells[i / 4].point[i % 4], all[i]);
+        tasks.push_back({&all[i], &shapes[i]});
+      }
       compute_supports(body, std::move(tasks), &occluders, nullptr, component);
       set_volumes(cells, all);
       points.blocks[b] = PointBlock(std::move(all), shapes);
@@ -279,16 +288,20 @@ void Galerkin::mark_changed(const Body& body, const BodyDelta& delta, std::span<
   for (const auto* list : {&delta.crack.new_faces, &delta.crack.removed_faces})
     for (const FaceId f : *list) faces_.push_back(body.surface.corners(f));
   near_.note_changes(delta.crack.new_faces);
-  for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i)
-    supports_.push_back({nodes.position[i], nodes.radius[i]}), nodes_.push_back(static_cast<std::uint32_t>(i));
+  for (std::size_t i = delta.first_new_node.index(); i < nodes.size(); ++i) {
+    supports_.push_back({nodes.position[i], nodes.radius[i]});
+    nodes_.push_back(static_cast<std::uint32_t>(i));
+  }
   for (std::size_t k = 0; k < delta.moved_nodes.size(); ++k) {
     const std::size_t i = delta.moved_nodes[k].index();
-    supports_.push_back({old_position[k], nodes.radius[i]}), supports_.push_back({nodes.position[i], nodes.radius[i]});
+    supports_.push_back({old_position[k], nodes.radius[i]});
+    supports_.push_back({nodes.position[i], nodes.radius[i]});
     nodes_.push_back(delta.moved_nodes[k].value);
   }
-  for (const auto& [i, before] : delta.resized_nodes)
-    supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])}),
-        nodes_.push_back(i.value);
+  for (const auto& [i, before] : delta.resized_nodes) {
+    supports_.push_back({nodes.position[i.index()], std::max(before, nodes.radius[i.index()])});
+    nodes_.push_back(i.value);
+  }
 }
 
 PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::uint32_t> component,
@@ -328,14 +341,17 @@ PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::ui
     for (std::size_t b = begin; b < end; ++b) points.blocks[b] = updates[b].make_block(cells_of(b), old);
   });
   points.number_points(body.nodes.size());
-  result.node_changed.assign(body.nodes.size(), 0), result.new_block.assign(old.size(), ~0u);
+  result.node_changed.assign(body.nodes.size(), 0);
+  result.new_block.assign(old.size(), ~0u);
   result.is_stale.assign(points.size(), 0);
   for (std::uint32_t b = 0; b < updates.size(); ++b)
     updates[b].record(b, points.first_point(b), points.blocks[b], old, result);
   for (std::size_t o = 0; o < old.size(); ++o)
     if (result.new_block[o] == ~0u)
       for (const auto j : old[o].nodes) result.node_changed[j] = 1;
-  faces_.clear(), supports_.clear(), nodes_.clear();
+  faces_.clear();
+  supports_.clear();
+  nodes_.clear();
   return result;
 }
 

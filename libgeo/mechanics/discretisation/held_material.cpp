@@ -73,7 +73,10 @@ struct HeldMaterial::Shapes {
       for (const Anchors& a : anchors) {
         if (a.box != box_of_node[j] || a.component != component[j]) continue;
         const double distance = squared_distance(x, nearest_in(boxes[a.box], x));
-        if (!nearest || distance < least || (distance == least && a.box < nearest->box)) nearest = &a, least = distance;
+        if (!nearest || distance < least || (distance == least && a.box < nearest->box)) {
+          nearest = &a;
+          least = distance;
+        }
       }
     }
     return nearest;
@@ -88,7 +91,8 @@ struct HeldMaterial::Shapes {
     Vec3 radius_gradient = Vec3::Zero();
     for (std::size_t j = 0; j < plain.nodes.size(); ++j) {
       const double r = body.nodes.radius[plain.nodes[j]];
-      radius += plain.value[j] * r, radius_gradient += r * plain.gradient[j];
+      radius += plain.value[j] * r;
+      radius_gradient += r * plain.gradient[j];
     }
     const Vec3 offset = x - nearest_in(boxes[anchor->box], x);
     const double distance = offset.norm(), t = distance / (width * radius);
@@ -117,7 +121,11 @@ struct HeldMaterial::Shapes {
     std::sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     ShapeGradients shape;
     Vec3 sum = Vec3::Zero();
-    for (const auto& [node, g] : entries) shape.nodes.push_back(node), shape.gradient.push_back(g), sum += g;
+    for (const auto& [node, g] : entries) {
+      shape.nodes.push_back(node);
+      shape.gradient.push_back(g);
+      sum += g;
+    }
     // Constants are reproduced exactly: an anchor takes the rounding error of the sum.
     const auto first = std::lower_bound(shape.nodes.begin(), shape.nodes.end(), anchor.node[0]) - shape.nodes.begin();
     shape.gradient[static_cast<std::size_t>(first)] -= sum;
@@ -158,8 +166,10 @@ std::vector<HeldMaterial::Anchors> HeldMaterial::anchors_of(const Body& body,
   for (const auto& [key, nodes] : held)
     if (const auto four = wide_tetrahedron(body.nodes, nodes)) {
       Eigen::Matrix4d corners;
-      for (Eigen::Index a = 0; a < 4; ++a)
-        corners.col(a) << 1, body.nodes.position[(*four)[static_cast<std::size_t>(a)]];
+      for (Eigen::Index a = 0; a < 4; ++a) {
+        corners.col(a) << 1;
+        body.nodes.position[(*four)[static_cast<std::size_t>(a)]];
+      }
       all.push_back({key.first, key.second, *four, corners.inverse()});
     }
   return all;
@@ -196,8 +206,10 @@ class HeldMaterial::Former {
       const std::size_t point = first + i, old = changes_.old_point.empty() ? point : changes_.old_point[point];
       if (!is_known || changes_.is_stale[point])
         near.stale.push_back(i);
-      else if (const Replaced* r = replaced_at(old))
-        near.sources[i] = {&r->held, old - r->first_point, nullptr}, near.has_former = true;
+      else if (const Replaced* r = replaced_at(old)) {
+        near.sources[i] = {&r->held, old - r->first_point, nullptr};
+        near.has_former = true;
+      }
     }
   }
 
@@ -247,19 +259,23 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
         }))
       continue;
     if (Replaced* r = former ? former->same(b, first, block) : nullptr) {
-      for (std::size_t i = 0; i < block.points.size(); ++i)
-        r->held.points[i].volume = block.points[i].volume,
+      for (std::size_t i = 0; i < block.points.size(); ++i) {
+        r->held.points[i].volume = block.points[i].volume;
         r->held.points[i].unscaled_volume = block.points[i].unscaled_volume;
+      }
       replaced_.push_back({b, std::exchange(block, std::move(r->held)), {}, first});
       continue;
     }
     Near& n = near.emplace_back();
-    n.block = b, n.first_point = first;
+    n.block = b;
+    n.first_point = first;
     for (std::size_t i = 0; i < block.points.size(); ++i) n.sources.push_back({&block, i, nullptr});
     if (former)
       former->find(first, block, n);
-    else
-      n.stale.resize(block.points.size()), std::iota(n.stale.begin(), n.stale.end(), 0);
+    else {
+      n.stale.resize(block.points.size());
+      std::iota(n.stale.begin(), n.stale.end(), 0);
+    }
   }
   replace(body, component, near, changes, points);
   std::sort(replaced_.begin(), replaced_.end(), [](const auto& a, const auto& b) { return a.block < b.block; });
@@ -332,7 +348,10 @@ void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& c
       auto sources = blocks[b].sources;
       is_replaced[b] = blocks[b].has_former;
       for (std::size_t k = first[b]; k < first[b + 1]; ++k)
-        if (candidates[k].held) sources[candidates[k].point].shape = &*candidates[k].held, is_replaced[b] = 1;
+        if (candidates[k].held) {
+          sources[candidates[k].point].shape = &*candidates[k].held;
+          is_replaced[b] = 1;
+        }
       if (is_replaced[b]) held[b] = PointBlock(block.points, sources);
     }
   });

@@ -63,28 +63,35 @@ bool InverseDeformation::is_included(FaceId f) const {
 
 void InverseDeformation::update(Neighborhood& near, const Vec3& x) const {
   if ((near.material - x).norm() < 0.5 * largest_support_) return;
-  near.material = x, near.node.clear(), near.fading.clear();
+  near.material = x;
+  near.node.clear();
+  near.fading.clear();
   // The margin is far beyond rounding.
   const Box3 about = Box3{x, x}.grown((0.5 + 1e-9) * largest_support_);
   for (const auto i : supporting_nodes(body_, about, 1, largest_support_))
     if (const double fading = fade((near.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3);
-        fading > 0 && is_included(i))
-      near.node.push_back(i), near.fading.push_back(fading);
+        fading > 0 && is_included(i)) {
+      near.node.push_back(i);
+      near.fading.push_back(fading);
+    }
 }
 
 bool InverseDeformation::deform(Neighborhood& near, const Vec3& x, Vec3& to, Mat3& f) const {
   update(near, x);
   double total = 0;
-  to.setZero(), f.setZero();
+  to.setZero();
+  f.setZero();
   for (std::size_t k = 0; k < near.node.size(); ++k) {
     const auto i = near.node[k];
     const double w = kernel((x - body_.nodes.position[i]).norm() / body_.nodes.radius[i], 1.0) * near.fading[k];
     if (!(w > 0)) continue;
-    total += w, f += w * gradient_[i];
+    total += w;
+    f += w * gradient_[i];
     to += w * (u_[i] + gradient_[i] * (x - body_.nodes.position[i]));
   }
   if (!(total > 0)) return false;
-  to = x + to / total, f = Mat3::Identity() + f / total;
+  to = x + to / total;
+  f = Mat3::Identity() + f / total;
   return true;
 }
 
@@ -103,16 +110,23 @@ Vec3 InverseDeformation::solve(Neighborhood& near, Vec3 x, double tolerance) con
       if (smallest == infinite)
         inverse = safe_inverse(f);
       else if (const Vec3 expected = inverse * (residual - now);
-               std::abs(step.dot(expected)) > least_share * step.squaredNorm())
-        inverse += (step - expected) * (step.transpose() * inverse) / step.dot(expected), is_changed = true;
-      smallest = now.norm(), best = x, residual = now, f_best = f;
+               std::abs(step.dot(expected)) > least_share * step.squaredNorm()) {
+        inverse += (step - expected) * (step.transpose() * inverse) / step.dot(expected);
+        is_changed = true;
+      }
+      smallest = now.norm();
+      best = x;
+      residual = now;
+      f_best = f;
       if (smallest <= tolerance) break;
     } else if (is_changed) {
-      inverse = safe_inverse(f_best), is_changed = false;
+      inverse = safe_inverse(f_best);
+      is_changed = false;
     } else {
       break;
     }
-    step = inverse * residual, x = best + step;
+    step = inverse * residual;
+    x = best + step;
   }
   return best;
 }
@@ -155,7 +169,8 @@ Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, doub
     const auto corner = body_.surface.corners(face);
     const double w = std::pow((range - d) / std::max(d, 1e-12 * range), 2);
     sum += w * (b[0] * corner[0] + b[1] * corner[1] + b[2] * corner[2] - (x + f_inverse * (on - y)));
-    total += w, nearest = std::min(nearest, d);
+    total += w;
+    nearest = std::min(nearest, d);
   }
   return total > 0 ? Vec3(std::pow(1 - nearest / range, 2) * sum / total) : Vec3(Vec3::Zero());
 }
@@ -198,7 +213,8 @@ InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, Vert
     if (!(w > 0)) continue;
     const Vec3 x = affine_inverse(i);
     const double agreeing = w * fade((x - guess).norm() / nodes.radius[a], 0.5, 1);
-    sum += agreeing * x, total += agreeing;
+    sum += agreeing * x;
+    total += agreeing;
   }
   Neighborhood near;
   near.world = y;

@@ -61,8 +61,11 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
   LocalNodes local_nodes = list_nodes(runs, place);
   std::size_t entries = 0;
   for (const SourceRun& run : runs) entries += run.entries();
-  entry_begin.reserve(points.size() + 1), entry_node.reserve(entries), entry_bent.reserve(entries);
-  entry_gradient.reserve(3 * entries), entry_gradient_single.reserve(3 * entries + 1);
+  entry_begin.reserve(points.size() + 1);
+  entry_node.reserve(entries);
+  entry_bent.reserve(entries);
+  entry_gradient.reserve(3 * entries);
+  entry_gradient_single.reserve(3 * entries + 1);
   entry_begin.push_back(0);
   for (const SourceRun& run : runs)
     if (run.shape)
@@ -70,7 +73,8 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
     else
       append(run, local_nodes[run.block]);
   entry_gradient_single.push_back(0);  // vector loads of an entry read four numbers
-  quantum.assign((points.size() + 7) / 8 * 8, 0), quad_begin.assign(1, 0);
+  quantum.assign((points.size() + 7) / 8 * 8, 0);
+  quad_begin.assign(1, 0);
   for (std::size_t quad = 0; 4 * quad < quantum.size(); ++quad) {
     if (const auto from = source_quad(sources, quad))
       copy_quad(quad, *from, local_nodes[from->block]);
@@ -127,7 +131,8 @@ void PointBlock::append(const SourceRun& run, std::span<const std::uint16_t> loc
   const auto copy = [&](const auto& of, auto& to, std::size_t width) {
     to.insert(to.end(), of.data() + width * begin, of.data() + width * end);
   };
-  copy(from.entry_gradient, entry_gradient, 3), copy(from.entry_gradient_single, entry_gradient_single, 3);
+  copy(from.entry_gradient, entry_gradient, 3);
+  copy(from.entry_gradient_single, entry_gradient_single, 3);
   copy(from.entry_bent, entry_bent, 1);
   entry_node.resize(before + end - begin);
   for (auto q = begin; q < end; ++q) entry_node[before + q - begin] = local_node[from.entry_node[q]];
@@ -150,8 +155,10 @@ void PointBlock::quantise(std::size_t quad) {
     double size = 0;
     for (std::size_t q = 3 * entry_begin[point]; q < 3 * entry_begin[point + 1]; ++q)
       size = std::max(size, std::abs(entry_gradient[q]));
-    if (size > 0)
-      cursors[k] = {entry_begin[point], entry_begin[point + 1], largest / size}, quantum[point] = float(size / largest);
+    if (size > 0) {
+      cursors[k] = {entry_begin[point], entry_begin[point + 1], largest / size};
+      quantum[point] = float(size / largest);
+    }
   }
   constexpr std::uint32_t none = 1 << 16;
   const auto next = [&](const Cursor& r) { return r.entry < r.end ? std::uint32_t(entry_node[r.entry]) : none; };
@@ -167,7 +174,8 @@ void PointBlock::quantise(std::size_t quad) {
         const auto i = static_cast<Eigen::Index>(c);
         r.sum[i] += r.scale * entry_gradient[3 * r.entry + c];
         const double integer = std::nearbyint(r.sum[i]) - r.emitted[i];
-        quad_gradient[begin + 8 * c + k] = static_cast<std::int16_t>(integer), r.emitted[i] += integer;
+        quad_gradient[begin + 8 * c + k] = static_cast<std::int16_t>(integer);
+        r.emitted[i] += integer;
       }
       ++r.entry;
     }
@@ -231,7 +239,9 @@ bool operator==(const PointBlock& a, const PointBlock& b) {
 }
 
 void MaterialPoints::number_points(std::size_t nodes) {
-  first_.assign(1, 0), scatter_begin_.assign(1, 0), slot_begin_.assign(nodes + 1, 0);
+  first_.assign(1, 0);
+  scatter_begin_.assign(1, 0);
+  slot_begin_.assign(nodes + 1, 0);
   for (const PointBlock& b : blocks) {
     first_.push_back(first_.back() + b.points.size());
     scatter_begin_.push_back(scatter_begin_.back() + b.nodes.size());
@@ -254,8 +264,10 @@ void MaterialPoints::set_materials(const Materials& materials) {
 void MaterialPoints::gather(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const {
   const auto& nodes = blocks[block].nodes;
   if (values.size() < 4 * nodes.size()) values.resize(4 * nodes.size());
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    Eigen::Map<Eigen::Vector4d>{&values[4 * k]} << u[nodes[k]] - u[nodes[0]], 0;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    Eigen::Map<Eigen::Vector4d>{&values[4 * k]} << u[nodes[k]] - u[nodes[0]];
+    0;
+  }
 }
 
 std::vector<Mat3> MaterialPoints::gradients(std::size_t block, const std::vector<Vec3>& u) const {

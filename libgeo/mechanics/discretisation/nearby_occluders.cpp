@@ -23,7 +23,8 @@ std::vector<Box3> merged(std::span<const Box3> boxes) {
       Box3 both = result.end()[-2];
       both.add(result.back());
       if (volume(both) > volume(result.back()) + volume(result.end()[-2])) break;
-      result.pop_back(), result.back() = both;
+      result.pop_back();
+      result.back() = both;
     }
   }
   return result;
@@ -61,9 +62,11 @@ const Occluders& NearbyOccluders::near(const Complex& surface, std::span<const B
   } else {
     if (stale_) known_.clear();  // else a second query adds to the first
     for (const Box3& box : wanted) known_.push_back(box.grown(margin));
-    known_ = merged(known_), faces_ = faces_in(surface, known_);
+    known_ = merged(known_);
+    faces_ = faces_in(surface, known_);
   }
-  occluders_.update(surface, faces_), stale_ = false;
+  occluders_.update(surface, faces_);
+  stale_ = false;
   return occluders_;
 }
 

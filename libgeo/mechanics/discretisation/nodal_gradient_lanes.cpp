@@ -26,7 +26,9 @@ void MlsGradient(std::span<const std::uint32_t> neighbors, const Vec3* g, const 
       y = hn::Add(y, hn::Mul(difference, hn::Set(d, g[q][1])));
       z = hn::Add(z, hn::Mul(difference, hn::Set(d, g[q][2])));
     }
-    hn::Store(x, d, out.at[0] + axis), hn::Store(y, d, out.at[1] + axis), hn::Store(z, d, out.at[2] + axis);
+    hn::Store(x, d, out.at[0] + axis);
+    hn::Store(y, d, out.at[1] + axis);
+    hn::Store(z, d, out.at[2] + axis);
   }
 }
 
@@ -47,7 +49,8 @@ void BlendedDisplacement(std::span<const std::uint32_t> neighbors, const AffineN
       auto displacement = hn::Load(d, nodes.displacement[j].at + axis);
       for (std::size_t c = 0; c < 3; ++c)
         displacement = hn::Add(displacement, hn::Mul(hn::Load(d, gradient[c] + axis), hn::Set(d, offset[c])));
-      total += w, sum = hn::Add(sum, hn::Mul(hn::Set(d, w), displacement));
+      total += w;
+      sum = hn::Add(sum, hn::Mul(hn::Set(d, w), displacement));
     }
     hn::Store(hn::Div(sum, hn::Set(d, total)), d, out.at + axis);
   }

@@ -37,7 +37,10 @@ NodalGradientOperator::Node build(std::uint32_t i, const NodeSet& nodes, const V
   Vec3 inverse = Vec3::Zero();
   int rank = 0;
   for (int k = 0; k < 3; ++k)
-    if (values[k] > 1e-4 * values[2] && values[k] > 0) inverse[k] = 1 / values[k], ++rank;
+    if (values[k] > 1e-4 * values[2] && values[k] > 0) {
+      inverse[k] = 1 / values[k];
+      ++rank;
+    }
   node.quality = rank == 3                                ? MomentQuality::good
                  : rank > 0 && node.neighbors.size() >= 2 ? MomentQuality::poor
                                                           : MomentQuality::singular;
@@ -132,7 +135,10 @@ double ModePenalty::add(const NodalGradientOperator& gradients, const std::vecto
         const Vec3 r = u[node.neighbors[q]] - u[i] - gradient * node.offset[q];
         const double w = weight_[i] * node.normalised_weight[q];
         energy[i] += 0.5 * w * r.squaredNorm();
-        if (derivative) by_residual[i].push_back(w * r), by_gradient[i] -= w * r * node.offset[q].transpose();
+        if (derivative) {
+          by_residual[i].push_back(w * r);
+          by_gradient[i] -= w * r * node.offset[q].transpose();
+        }
       }
     }
   });

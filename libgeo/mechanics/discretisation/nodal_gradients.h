@@ -82,8 +82,10 @@ class LazyNodalGradients {
     const Mat3 gradient = operator_->displacement_gradient(i, *u_);
     // Several threads may have computed it: the first to claim the entry writes it, the others use
     // their own copy.
-    if (State unknown = State::unknown; state_[i].compare_exchange_strong(unknown, State::claimed))
-      gradient_[i] = gradient, state_[i].store(State::known, std::memory_order_release);
+    if (State unknown = State::unknown; state_[i].compare_exchange_strong(unknown, State::claimed)) {
+      gradient_[i] = gradient;
+      state_[i].store(State::known, std::memory_order_release);
+    }
     return gradient;
   }
 

@@ -57,7 +57,9 @@ void OccludingFaces::remove_changed(const Complex& surface) {
     if (!f.valid()) continue;
     if (f.index() < surface.face_count() && surface.alive(f) && surface.corners(f) == known_.corners[i]) continue;
     known_.boxes.remove(i);
-    known_.face[i] = FaceId(), place_[f.index()] = none, ++removed_;
+    known_.face[i] = FaceId();
+    place_[f.index()] = none;
+    ++removed_;
   }
 }
 
@@ -72,7 +74,9 @@ void OccludingFaces::update(const Complex& surface, std::span<const FaceId> ids)
   }
   for (const FaceId f : known_.face)
     if (f.valid()) place_[f.index()] = none;
-  known_ = tree_over(surface, ids), fresh_ = {}, removed_ = 0;
+  known_ = tree_over(surface, ids);
+  fresh_ = {};
+  removed_ = 0;
   place_.resize(std::max<std::size_t>(place_.size(), surface.face_count()), none);
   for (std::uint32_t i = 0; i < known_.face.size(); ++i) place_[known_.face[i].index()] = i;
 }

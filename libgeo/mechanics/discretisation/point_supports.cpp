@@ -123,7 +123,10 @@ struct Batch {
       for (std::size_t k = 0; k < all.size(); ++k)
         if (const auto j = all[k]; holds[k]) {
           nodes.push_back(j);
-          if (!recalls || changes->has_changed(j)) influence.add(position[j]), largest = std::max(largest, radius[j]);
+          if (!recalls || changes->has_changed(j)) {
+            influence.add(position[j]);
+            largest = std::max(largest, radius[j]);
+          }
         }
       first.push_back(nodes.size());
     }
@@ -244,12 +247,17 @@ struct Batch {
     scratch.path.assign(n, Path::unknown);
     if (faces.empty()) return;
     if (!is_recalled(task, changes)) return faces.blocks(x, scratch.positions, scratch.hidden.data());
-    scratch.is_known.assign(n, 0), scratch.touched.assign(n, 0), scratch.unknown.clear(), scratch.ends.clear();
+    scratch.is_known.assign(n, 0);
+    scratch.touched.assign(n, 0);
+    scratch.unknown.clear();
+    scratch.ends.clear();
     recall(trial, scratch);
     if (!changed.empty()) changes->faces().blocks(x, scratch.positions, scratch.touched.data());
     for (std::uint32_t q = 0; q < n; ++q)
-      if (!scratch.is_known[q] || scratch.touched[q])
-        scratch.unknown.push_back(q), scratch.ends.push_back(scratch.positions[q]);
+      if (!scratch.is_known[q] || scratch.touched[q]) {
+        scratch.unknown.push_back(q);
+        scratch.ends.push_back(scratch.positions[q]);
+      }
     scratch.touched.assign(scratch.ends.size(), 0);
     faces.blocks(x, scratch.ends, scratch.touched.data());
     for (std::size_t k = 0; k < scratch.unknown.size(); ++k) scratch.hidden[scratch.unknown[k]] = scratch.touched[k];
@@ -286,10 +294,16 @@ struct Batch {
     MaterialPoint& point = *task.point;
     ShapeGradients& shape = *task.shape;
     const Vec3& x = point.position;
-    scratch.nodes.clear(), scratch.positions.clear(), scratch.seen.clear(), shape.nodes.clear(), shape.bent.clear();
+    scratch.nodes.clear();
+    scratch.positions.clear();
+    scratch.seen.clear();
+    shape.nodes.clear();
+    shape.bent.clear();
     for (const auto j : candidates)
-      if (const Vec3& y = body.nodes.position[j]; (y - x).norm() < factor * body.nodes.radius[j])
-        scratch.nodes.push_back(j), scratch.positions.push_back(y);
+      if (const Vec3& y = body.nodes.position[j]; (y - x).norm() < factor * body.nodes.radius[j]) {
+        scratch.nodes.push_back(j);
+        scratch.positions.push_back(y);
+      }
     find_hidden(trial, scratch);
     point.widenings = static_cast<std::uint8_t>(std::find(support_factors.begin(), support_factors.end(), factor) -
                                                 support_factors.begin());
@@ -307,7 +321,9 @@ struct Batch {
       const auto node =
           scratch.hidden[q] ? diffracted_support(x, y, support, near, faces) : direct_support(x, y, support);
       if (!node) continue;
-      shape.nodes.push_back(scratch.nodes[q]), shape.bent.push_back(scratch.hidden[q]), scratch.seen.push_back(*node);
+      shape.nodes.push_back(scratch.nodes[q]);
+      shape.bent.push_back(scratch.hidden[q]);
+      scratch.seen.push_back(*node);
     }
     const double condition =
         shape_gradients(x, scratch.seen, shape.gradient, task.with_values ? &shape.value : nullptr, ill_conditioned);
@@ -316,7 +332,11 @@ struct Batch {
                                                   : MomentQuality::singular;
     const bool enough = shape.nodes.size() >= enough_nodes && point.quality == MomentQuality::good &&
                         !(point.occluded && is_steep(shape, scratch.seen));
-    if (point.quality == MomentQuality::singular) shape.nodes.clear(), shape.gradient.clear(), shape.bent.clear();
+    if (point.quality == MomentQuality::singular) {
+      shape.nodes.clear();
+      shape.gradient.clear();
+      shape.bent.clear();
+    }
     return enough;
   }
 };
@@ -342,8 +362,10 @@ VisibilityChanges::VisibilityChanges(std::span<const std::array<Vec3, 3>> faces,
                                      std::size_t node_count)
     : faces_(faces), node_(node_count, 0) {
   for (const auto i : nodes) node_[i] = 1;
-  for (const auto& face : faces)
-    boxes_.push_back(box_of(face[0], face[1], face[2])), balls_.push_back(bounding_ball(face));
+  for (const auto& face : faces) {
+    boxes_.push_back(box_of(face[0], face[1], face[2]));
+    balls_.push_back(bounding_ball(face));
+  }
 }
 
 void VisibilityChanges::faces_near(const Box3& points, double radius, std::vector<std::uint32_t>& faces) const {
@@ -429,7 +451,8 @@ bool straight_shape(const Body& body, const PointBlock& block, std::size_t point
     return false;
   const MaterialPoint& p = block.points[point];
   std::vector<SupportNode> seen;
-  shape.nodes.clear(), shape.bent.assign(end - begin, 0);
+  shape.nodes.clear();
+  shape.bent.assign(end - begin, 0);
   for (auto q = begin; q < end; ++q) {
     const auto j = block.nodes[block.entry_node[q]];
     shape.nodes.push_back(j);

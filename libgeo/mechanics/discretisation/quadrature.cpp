@@ -44,7 +44,9 @@ void each_neighbor(const Cell& cell, int root, const Visit& visit) {
   const std::int32_t edge = std::int32_t(1) << cell.level, end = std::int32_t(1) << root;
   for (int k = 0; k < 27; ++k) {
     Cell n = cell;
-    n.corner[0] += (k % 3 - 1) * edge, n.corner[1] += (k / 3 % 3 - 1) * edge, n.corner[2] += (k / 9 - 1) * edge;
+    n.corner[0] += (k % 3 - 1) * edge;
+    n.corner[1] += (k / 3 % 3 - 1) * edge;
+    n.corner[2] += (k / 9 - 1) * edge;
     if (k != 13 && std::all_of(n.corner.begin(), n.corner.end(), [&](auto c) { return c >= 0 && c < end; })) visit(n);
   }
 }
@@ -259,7 +261,8 @@ bool QuadratureCells::update(const Body& body) {
     if (visit(region, merged)) skin_->divide(lattice_, region, [&](Region&& child) { self(self, child); });
   };
   for (const Cell& c : changed) {
-    skip_to(morton(c.corner), true), skip_to(morton(c.corner) + (std::uint64_t(1) << 3 * c.level), false);
+    skip_to(morton(c.corner), true);
+    skip_to(morton(c.corner) + (std::uint64_t(1) << 3 * c.level), false);
     if (const Region region = skin_->at(lattice_, c); region.cut() || region.inside) descend(descend, region);
   }
   skip_to(~std::uint64_t(0), true);
@@ -287,7 +290,10 @@ std::vector<std::size_t> QuadratureCells::groups(std::size_t max_cells) const {
       if (to - pending > max_cells) {
         if (pending < begin) first.push_back(pending);
         pending = begin;
-        if (to - begin > max_cells) self(self, begin, to, corner + k * child, level - 1), pending = to;
+        if (to - begin > max_cells) {
+          self(self, begin, to, corner + k * child, level - 1);
+          pending = to;
+        }
       }
       begin = to;
     }

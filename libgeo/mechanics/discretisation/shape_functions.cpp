@@ -47,10 +47,12 @@ double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::v
   Mat4 m = Mat4::Zero();
   for (std::size_t j = 0; j < n; ++j) {
     const double h = nodes[j].support / scale, s = nodes[j].distance / nodes[j].support;
-    p[j] << 1, (nodes[j].position - x) / scale;
+    p[j] << 1;
+    (nodes[j].position - x) / scale;
     // Quartic spline: w = 1 − 6 s² + 8 s³ − 3 s⁴, ∂w = −12 s (1 − s)² ∂s. (kernel.h is the kernel
     // of nodal gradients and of Eq. 1, not of these shape functions.)
-    w[j] = 1 + s * s * (-6 + s * (8 - 3 * s)), dw[j] = -12 * s * (1 - s) * (1 - s) / h * nodes[j].distance_gradient;
+    w[j] = 1 + s * s * (-6 + s * (8 - 3 * s));
+    dw[j] = -12 * s * (1 - s) * (1 - s) / h * nodes[j].distance_gradient;
     m += w[j] * p[j] * p[j].transpose();
   }
   const Mat4 inverse = m.inverse();
@@ -68,7 +70,10 @@ double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::v
   Eigen::Matrix<double, 4, 3> dm_b = Eigen::Matrix<double, 4, 3>::Zero();  // ∂M b
   for (std::size_t j = 0; j < n; ++j) {
     dm_b += b.dot(p[j]) * p[j] * dw[j].transpose();
-    for (int a = 0; a < 3; ++a) dm_b(1 + a, a) -= w[j] * b.dot(p[j]), dm_b.col(a) -= w[j] * b[1 + a] * p[j];
+    for (int a = 0; a < 3; ++a) {
+      dm_b(1 + a, a) -= w[j] * b.dot(p[j]);
+      dm_b.col(a) -= w[j] * b[1 + a] * p[j];
+    }
   }
   const Eigen::Matrix<double, 4, 3> db = -(inverse * dm_b);
   gradient.resize(n);

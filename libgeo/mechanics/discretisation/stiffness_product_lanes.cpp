@@ -125,9 +125,11 @@ HWY_INLINE void quad_divergence(const PointBlock& block, std::size_t quad, const
   for (std::size_t k = block.quad_begin[quad]; k < block.quad_begin[quad + 1]; k += 2) {
     if constexpr (nodes_per_vector == 2) {
       const auto f = force(shape + 12 * k);
-      add(k, hn::LowerHalf(d4, f)), add(k + 1, hn::UpperHalf(d4, f));
+      add(k, hn::LowerHalf(d4, f));
+      add(k + 1, hn::UpperHalf(d4, f));
     } else {
-      add(k, force(shape + 12 * k)), add(k + 1, force(shape + 12 * k + 4));
+      add(k, force(shape + 12 * k));
+      add(k + 1, force(shape + 12 * k + 4));
     }
   }
 }
@@ -162,7 +164,10 @@ HWY_INLINE void apply_modes(const PointBlock& block, const StiffnessModes& modes
     const auto number = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, stiffness + 8 * k); };
     Matrix<float> u, v;
     for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t r = 0; r < 3; ++r) u.at[c][r] = frame(3 * c + r), v.at[c][r] = frame(9 + 3 * c + r);
+      for (std::size_t r = 0; r < 3; ++r) {
+        u.at[c][r] = frame(3 * c + r);
+        v.at[c][r] = frame(9 + 3 * c + r);
+      }
     const auto quantum = hn::Mul(hn::LoadU(d, block.quantum.data() + first + i),
                                  hn::Set(d, 1 / (StiffnessModes::frame_scale * StiffnessModes::frame_scale)));
     Matrix<float> at, out;

@@ -146,7 +146,8 @@ HWY_INLINE Vector elastic(const ElasticConstants& m, const Matrix<double>& h, Ma
 HWY_INLINE Vector viscous(const ElasticConstants& m, const Matrix<double>& g, const Matrix<double>& previous,
                           Matrix<double>& stress) {
   Vector rate[6], old[6];
-  green_strain(g, rate), green_strain(previous, old);
+  green_strain(g, rate);
+  green_strain(previous, old);
   for (int k = 0; k < 6; ++k) rate[k] = hn::Div(hn::Sub(rate[k], old[k]), number(m.dt));
   const Matrix<double> strain_rate_stress = product(with_identity(g), symmetric(rate));
   for (int c = 0; c < 3; ++c)

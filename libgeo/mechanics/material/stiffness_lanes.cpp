@@ -54,8 +54,10 @@ HWY_INLINE void diagonalise(Vector (&all)[sets][3][3], Matrix<float> (&vectors)[
             hn::IfThenElseZero(rotates, hn::Div(hn::CopySign(twice, hn::Xor(twice, difference)),
                                                 hn::IfThenElse(rotates, hn::Add(hn::Abs(difference), root), one)));
         const auto step = hn::Mul(t, apq);
-        c[m] = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one))), s[m] = hn::Mul(t, c[m]);
-        a[p][p] = hn::Sub(a[p][p], step), a[q][q] = hn::Add(a[q][q], step);
+        c[m] = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(t, t), one)));
+        s[m] = hn::Mul(t, c[m]);
+        a[p][p] = hn::Sub(a[p][p], step);
+        a[q][q] = hn::Add(a[q][q], step);
         a[p][q] = a[q][p] = hn::IfThenElse(rotates, zero, apq);
       }
       for (int m = 0; m < sets; ++m) {
@@ -89,10 +91,12 @@ HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<floa
     const int p = k == 1 ? 1 : 0, q = p + 1;
     const auto swap = hn::Lt(s[p][p], s[q][q]);
     const auto sp = s[p][p];
-    s[p][p] = hn::IfThenElse(swap, s[q][q], sp), s[q][q] = hn::IfThenElse(swap, sp, s[q][q]);
+    s[p][p] = hn::IfThenElse(swap, s[q][q], sp);
+    s[q][q] = hn::IfThenElse(swap, sp, s[q][q]);
     for (int i = 0; i < 3; ++i) {
       const auto vp = v.at[p][i];
-      v.at[p][i] = hn::IfThenElse(swap, v.at[q][i], vp), v.at[q][i] = hn::IfThenElse(swap, hn::Neg(vp), v.at[q][i]);
+      v.at[p][i] = hn::IfThenElse(swap, v.at[q][i], vp);
+      v.at[q][i] = hn::IfThenElse(swap, hn::Neg(vp), v.at[q][i]);
     }
   }
   Vector b[3][3];
@@ -120,7 +124,9 @@ HWY_INLINE void decompose(const Matrix<float>& f, Vector (&s)[3][3], Matrix<floa
     const int i = (r + 1) % 3, j = (r + 2) % 3;
     u.at[2][r] = hn::Sub(hn::Mul(u.at[0][i], u.at[1][j]), hn::Mul(u.at[0][j], u.at[1][i]));
   }
-  sigma[0] = length, sigma[1] = hn::IfThenElse(vanishes, zero, hn::Sqrt(second)), sigma[2] = dot3(u.at[2], b[2]);
+  sigma[0] = length;
+  sigma[1] = hn::IfThenElse(vanishes, zero, hn::Sqrt(second));
+  sigma[2] = dot3(u.at[2], b[2]);
 }
 
 // Stiffness in the principal frame, as functions of the singular values σ. ψᵢ = ∂Ψ/∂σᵢ. The divided
@@ -166,7 +172,7 @@ HWY_INLINE Principal principal(const StiffnessConstants& m, const Vector (&s)[3]
     auto stretch = shear, twist = shear;
     if (!m.neo_hookean) {
       const auto squares = hn::Add(hn::Mul(s[i], s[i]), hn::Mul(s[l], s[l])), both = hn::Mul(s[i], s[l]);
-      stretch = hn::Add(green, hn::Mul(mu, hn::Add(squares, both))),
+      stretch = hn::Add(green, hn::Mul(mu, hn::Add(squares, both)));
       twist = hn::Add(green, hn::Mul(mu, hn::Sub(squares, both)));
     }
     p.stretch[k] = hn::Max(hn::Sub(stretch, pressure_term), hn::Zero(d));
@@ -210,8 +216,10 @@ HWY_INLINE void write(const StiffnessConstants& material, std::size_t i, const P
   };
   const auto shorter = hn::Div(full, longest);
   for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t r = 0; r < 3; ++r)
-      put(3 * c + r, hn::Mul(u.at[c][r], full)), put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
+    for (std::size_t r = 0; r < 3; ++r) {
+      put(3 * c + r, hn::Mul(u.at[c][r], full));
+      put(9 + 3 * c + r, hn::Mul(v.at[c][r], shorter));
+    }
   const auto w = hn::Mul(hn::LoadU(d, weight + i), hn::Mul(longest, longest));
   float* const to = &out.stiffness[out.offset(i, 12)];
   Vector kept[3];
@@ -286,7 +294,10 @@ void StiffnessModes::copy_point(const StiffnessModes& from, std::size_t point) {
 Eigen::Matrix3f StiffnessModes::rotation(std::size_t point) const {
   Eigen::Matrix3f u, v;
   const std::int16_t* const from = &frame[offset(point, 18)];
-  for (std::size_t k = 0; k < 9; ++k) u.data()[k] = from[8 * k], v.data()[k] = from[8 * (9 + k)];
+  for (std::size_t k = 0; k < 9; ++k) {
+    u.data()[k] = from[8 * k];
+    v.data()[k] = from[8 * (9 + k)];
+  }
   return u * v.transpose() / (frame_scale * frame_scale);
 }
 

@@ -28,7 +28,11 @@ struct StiffnessModes {
   /// The index of a point's first number if each point has n.
   static std::size_t offset(std::size_t point, std::size_t n) { return 8 * n * (point / 8) + point % 8; }
   /// Makes space for `count` points, a multiple of eight.
-  void resize(std::size_t count) { points = count, frame.resize(18 * count), stiffness.resize(12 * count); }
+  void resize(std::size_t count) {
+    points = count;
+    frame.resize(18 * count);
+    stiffness.resize(12 * count);
+  }
   /// Copies all numbers of one point from the same point of `from`.
   void copy_point(const StiffnessModes& from, std::size_t point);
   /// The rotation U Vᵀ of a point.

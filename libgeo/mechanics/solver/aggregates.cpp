@@ -36,7 +36,8 @@ struct Boxes {
     const std::size_t half = nodes.size() / 2;
     std::nth_element(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(half), nodes.end(),
                      [&](auto a, auto b) { return std::pair(position[a][axis], a) < std::pair(position[b][axis], b); });
-    divide(nodes.first(half), most), divide(nodes.subspan(half), most);
+    divide(nodes.first(half), most);
+    divide(nodes.subspan(half), most);
   }
 };
 
@@ -72,13 +73,18 @@ Aggregates::Aggregates(const std::vector<Vec3>& position, const NodalGradientOpe
     if (of[i] != ~0u) continue;
     const auto aggregate = static_cast<std::uint32_t>(found.size());
     Placement& own = found.emplace_back(Placement{component_of[i]});
-    of[i] = aggregate, stack = {i};
+    of[i] = aggregate;
+    stack = {i};
     while (!stack.empty()) {
       const auto j = stack.back();
       stack.pop_back();
-      own.coordinate += position[j][axis[component_of[i]]], ++own.nodes;
+      own.coordinate += position[j][axis[component_of[i]]];
+      ++own.nodes;
       for (const auto k : mls[j].neighbors)
-        if (of[k] == ~0u && boxes.of[k] == boxes.of[i]) of[k] = aggregate, stack.push_back(k);
+        if (of[k] == ~0u && boxes.of[k] == boxes.of[i]) {
+          of[k] = aggregate;
+          stack.push_back(k);
+        }
     }
     own.coordinate /= own.nodes;
   }
@@ -86,7 +92,10 @@ Aggregates::Aggregates(const std::vector<Vec3>& position, const NodalGradientOpe
   std::iota(order.begin(), order.end(), 0);
   const auto key = [&](std::uint32_t a) { return std::tuple(found[a].component, found[a].coordinate, a); };
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
-  for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k, component.push_back(found[order[k]].component);
+  for (std::uint32_t k = 0; k < order.size(); ++k) {
+    rank[order[k]] = k;
+    component.push_back(found[order[k]].component);
+  }
   for (auto& a : of) a = rank[a];
 }
 

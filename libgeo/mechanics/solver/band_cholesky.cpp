@@ -18,7 +18,9 @@ BandCholesky::BandCholesky(const std::vector<std::size_t>& last)
     last_[g] = std::max(last_[g], g);
     if (g > ranges_.back()) last_[g] = std::max(last_[g], last_[g - 1]);
     if (last_[g] == g) ranges_.push_back(g + 1);
-    begin_.push_back(size), stride_.push_back(length(g) + band_padding), size += 6 * stride_.back();
+    begin_.push_back(size);
+    stride_.push_back(length(g) + band_padding);
+    size += 6 * stride_.back();
   }
   values_.assign(size, 0);
 }

@@ -39,7 +39,10 @@ CoarseCorrection::CoarseCorrection(const Aggregates& aggregates, const std::vect
   std::vector<Vec3> centre(aggregates.count(), Vec3::Zero());
   for (std::size_t i = 0; i < at.size(); ++i) {
     free_[i] = fixed.empty() || !fixed[i];
-    if (free_[i]) ++first_[aggregates.of[i] + 1], centre[aggregates.of[i]] += at[i];
+    if (free_[i]) {
+      ++first_[aggregates.of[i] + 1];
+      centre[aggregates.of[i]] += at[i];
+    }
   }
   for (std::size_t g = 0; g < centre.size(); ++g) {
     if (first_[g + 1] > 0) centre[g] /= first_[g + 1];
@@ -48,7 +51,10 @@ CoarseCorrection::CoarseCorrection(const Aggregates& aggregates, const std::vect
   member_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::uint32_t i = 0; i < at.size(); ++i)
-    if (free_[i]) member_[next[aggregates.of[i]]++] = i, arm_[i] = at[i] - centre[aggregates.of[i]];
+    if (free_[i]) {
+      member_[next[aggregates.of[i]]++] = i;
+      arm_[i] = at[i] - centre[aggregates.of[i]];
+    }
 }
 
 CoarseCorrection::BlockTiles CoarseCorrection::block_tiles(const PointBlock& block, std::size_t b,
@@ -122,11 +128,14 @@ void CoarseCorrection::solve(const std::vector<Vec3>& r, const ActiveIslands& ac
     for (std::size_t g = begin; g < end; ++g) {
       if (first_[g] == first_[g + 1] || !active[active.islands().of(member_[first_[g]])]) continue;
       Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-      for (auto k = first_[g]; k < first_[g + 1]; ++k)
-        force += r[member_[k]], torque += arm_[member_[k]].cross(r[member_[k]]);
-      for (int k = 0; k < 3; ++k)
-        motion_[6 * g + static_cast<std::size_t>(k)] = float(force[k]),
-                        motion_[6 * g + 3 + static_cast<std::size_t>(k)] = float(torque[k]);
+      for (auto k = first_[g]; k < first_[g + 1]; ++k) {
+        force += r[member_[k]];
+        torque += arm_[member_[k]].cross(r[member_[k]]);
+      }
+      for (int k = 0; k < 3; ++k) {
+        motion_[6 * g + static_cast<std::size_t>(k)] = float(force[k]);
+        motion_[6 * g + 3 + static_cast<std::size_t>(k)] = float(torque[k]);
+      }
     }
   });
   matrix_.solve(motion_.data());

@@ -39,9 +39,10 @@ HWY_INLINE void strain_and_stress(const float* HWY_RESTRICT moment, const float*
                                      hn::Add(entry(1, 2), entry(2, 1))};
     const auto trace = hn::Mul(bulk, hn::Add(hn::Add(normal[0], normal[1]), normal[2]));
     for (std::size_t q = 0; q < 3; ++q) {
-      hn::StoreU(normal[q], d, strain + 8 * q + k), hn::StoreU(shear[q], d, strain + 24 + 8 * q + k);
-      hn::StoreU(hn::Mul(weight, hn::Add(hn::Mul(twice, normal[q]), trace)), d, stress + 8 * q + k),
-          hn::StoreU(hn::Mul(weighted, shear[q]), d, stress + 24 + 8 * q + k);
+      hn::StoreU(normal[q], d, strain + 8 * q + k);
+      hn::StoreU(shear[q], d, strain + 24 + 8 * q + k);
+      hn::StoreU(hn::Mul(weight, hn::Add(hn::Mul(twice, normal[q]), trace)), d, stress + 8 * q + k);
+      hn::StoreU(hn::Mul(weighted, shear[q]), d, stress + 24 + 8 * q + k);
     }
   }
 }
@@ -71,7 +72,9 @@ void RigidStiffness(const CorotatedPoints& points, const std::uint16_t* slot, st
     const std::uint16_t* const to = block.entry_node.data();
     for (std::size_t q = block.entry_begin[i], last = block.entry_begin[i + 1]; q < last; ++q) {
       const std::uint32_t s = slot[to[q]];
-      here[count] = s, count += !is_here[s], is_here[s] = 1;
+      here[count] = s;
+      count += !is_here[s];
+      is_here[s] = 1;
       float* const m = &moments[48 * s];
       const float *const at = arm + 16 * to[q], *const g = &block.entry_gradient_single[3 * q];
       for (std::size_t k = 0; k < 16; k += hn::MaxLanes(d)) {
@@ -85,8 +88,9 @@ void RigidStiffness(const CorotatedPoints& points, const std::uint16_t* slot, st
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t k = 0; k < 4; ++k) {
         const float* const column = rotation.data() + 3 * c;
-        turn[16 * c + k] = column[k % 3], turn[16 * c + 4 + k] = column[(k + 2) % 3],
-                      turn[16 * c + 12 + k] = column[(k + 1) % 3];
+        turn[16 * c + k] = column[k % 3];
+        turn[16 * c + 4 + k] = column[(k + 2) % 3];
+        turn[16 * c + 12 + k] = column[(k + 1) % 3];
       }
     for (std::size_t s = 0; s < count; ++s) {
       float* const m = &moments[48 * here[s]];

@@ -37,12 +37,18 @@ class Solve {
         norm_(mask_.size(), 0) {}
 
   int run(const std::vector<Vec3>& force) {
-    working_.each_node([&](std::size_t i) { x_[i].setZero(), r_[i] = force[i]; });
+    working_.each_node([&](std::size_t i) {
+      x_[i].setZero();
+      r_[i] = force[i];
+    });
     precondition(working_, rz_);
     initial_rz_ = rz_;
     const bool coarse_moves = stopping_.first_direction && move_along_coarse_level();
     working_.each_node([&](std::size_t i) { p_[i] = z_[i]; });
-    while (iterations_ < most_iterations && select_unconverged()) iterate(), ++iterations_;
+    while (iterations_ < most_iterations && select_unconverged()) {
+      iterate();
+      ++iterations_;
+    }
     return iterations_ + (coarse_moves ? 1 : 0);
   }
 
@@ -87,7 +93,8 @@ class Solve {
     islands.select(mask);
     islands.maximum(norm_, [&](std::size_t i) {
       const double a = alpha_[potential_.islands().of(i)];
-      x_[i] += a * p_[i], r_[i] -= a * hp_[i];
+      x_[i] += a * p_[i];
+      r_[i] -= a * hp_[i];
       return potential_.problem().squared_in_spacings(x_[i], i);
     });
     islands.take_square_roots(norm_);

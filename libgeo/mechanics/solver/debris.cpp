@@ -41,7 +41,10 @@ std::vector<RigidBody> rigid_bodies(const SolidDiscretisation& solid, const std:
   for (std::uint32_t i = 0; i < solid.size(); ++i) {
     const auto c = solid.component[i];
     if (strained[c]) continue;
-    if (body_of[c] == ~0u) body_of[c] = static_cast<std::uint32_t>(bodies.size()), bodies.emplace_back();
+    if (body_of[c] == ~0u) {
+      body_of[c] = static_cast<std::uint32_t>(bodies.size());
+      bodies.emplace_back();
+    }
     bodies[body_of[c]].nodes.push_back(i);
   }
   std::erase_if(bodies, [](const RigidBody& body) { return body.nodes.size() == 1; });
@@ -62,14 +65,19 @@ void make_rigid(const SolidDiscretisation& solid, const RigidBody& body, State& 
   Vec3 rest = Vec3::Zero(), now = rest, momentum = rest;
   for (const auto i : body.deciding) {
     const double m = solid.mass[i];
-    mass += m, rest += m * solid.position[i], now += m * at(i), momentum += m * state.velocity[i];
+    mass += m;
+    rest += m * solid.position[i];
+    now += m * at(i);
+    momentum += m * state.velocity[i];
   }
-  rest /= mass, now /= mass;
+  rest /= mass;
+  now /= mass;
   Mat3 fit = Mat3::Zero();
   double size = 0;
   for (const auto i : body.deciding) {
     const Vec3 from = solid.position[i] - rest;
-    fit += solid.mass[i] * (at(i) - now) * from.transpose(), size += solid.mass[i] * from.squaredNorm();
+    fit += solid.mass[i] * (at(i) - now) * from.transpose();
+    size += solid.mass[i] * from.squaredNorm();
   }
   const bool turns = body.deciding.size() > 1;  // else the rest is rounding
   const Mat3 rotation = rotation_of(fit, turns ? size : 0, state.rotation[body.nodes[0]]);

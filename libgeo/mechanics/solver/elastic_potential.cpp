@@ -33,7 +33,8 @@ ElasticPotential::ElasticPotential(const StepProblem& problem)
       strain_(strain_for(problem)),
       relaxation_(solid_.relaxation_of(problem.start)) {
   const std::size_t blocks = solid_.points.blocks.size();
-  stiffness_.modes.resize(blocks), stiffness_.weight.resize(blocks);
+  stiffness_.modes.resize(blocks);
+  stiffness_.weight.resize(blocks);
   const bool viscous = solid_.materials.any([](const Material& m) { return m.viscosity > 0; });
   if (viscous) start_gradient_.resize(blocks);
   parallel_for(blocks, 4, [&](std::size_t begin, std::size_t end) {
@@ -54,9 +55,11 @@ void ElasticPotential::evaluate(const ActiveIslands& active, const std::vector<V
   const MaterialPoints& points = solid_.points;
   const Islands& islands = active.islands();
   const auto blocks = active.blocks();
-  block_energy_.resize(islands.block_first(points.blocks.size())), block_forces_.resize(4 * points.scatter_size());
+  block_energy_.resize(islands.block_first(points.blocks.size()));
+  block_forces_.resize(4 * points.scatter_size());
   if (response) {
-    response->energy.resize(islands.count()), response->force.resize(solid_.size());
+    response->energy.resize(islands.count());
+    response->force.resize(solid_.size());
     response->deformation.resize(points.blocks.size());
   }
   std::vector<double> island_energy(islands.count(), 0);
@@ -100,8 +103,10 @@ void ElasticPotential::evaluate(const ActiveIslands& active, const std::vector<V
 
 void ElasticPotential::linearise(const ActiveIslands& active, const ElasticResponse& response) {
   std::vector<StiffnessConstants> constants;  // per material
-  for (const Material& m : solid_.materials.all())
-    constants.push_back(stiffness_constants(m)), constants.back().viscous = float(m.viscosity / dt_);
+  for (const Material& m : solid_.materials.all()) {
+    constants.push_back(stiffness_constants(m));
+    constants.back().viscous = float(m.viscosity / dt_);
+  }
   const auto blocks = active.blocks();
   parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     PointMatrices<float> relaxation;

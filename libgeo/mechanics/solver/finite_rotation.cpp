@@ -19,7 +19,8 @@ FiniteRotation::FiniteRotation(const IncrementalPotential& potential) : potentia
   freedom_.assign(islands.free_count(), Freedom::rigid);
   for (std::size_t i = 0; i < solid.size(); ++i) {
     const auto f = island_of(i);
-    island_[f] = islands.of(i), spacing_[f] = std::min(spacing_[f], solid.spacing[i]);
+    island_[f] = islands.of(i);
+    spacing_[f] = std::min(spacing_[f], solid.spacing[i]);
     if (is_fixed(potential.problem().environment, i))
       freedom_[f] = Freedom::none;
     else if (freedom_[f] == Freedom::rigid && !solid.galerkin && solid.mls.quality(i) != MomentQuality::good)

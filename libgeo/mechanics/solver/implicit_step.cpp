@@ -40,7 +40,8 @@ void advance(const WholeStep& whole, double from, double h) {
   state.acceleration.resize(whole.solid.size());
   for (std::size_t i = 0; i < whole.solid.size(); ++i) {
     const Vec3 velocity = (solver.displacement()[i] - state.displacement[i]) / h;
-    state.acceleration[i] = (velocity - state.velocity[i]) / h, state.velocity[i] = velocity;
+    state.acceleration[i] = (velocity - state.velocity[i]) / h;
+    state.velocity[i] = velocity;
   }
   state.displacement = solver.displacement();
   whole.solid.update_plasticity(state, h);

@@ -73,7 +73,10 @@ void ActiveIslands::select(const std::vector<char>& mask) {
   constexpr std::size_t nodes_per_run = 512;  // a few microseconds of work, and enough runs for all threads
   if (mask == mask_) return;
   mask_ = mask;
-  runs_.clear(), blocks_.clear(), active_subdomains_.clear(), node_count_ = 0;
+  runs_.clear();
+  blocks_.clear();
+  active_subdomains_.clear();
+  node_count_ = 0;
   for (std::uint32_t p = 0; p < islands_.count(); ++p) {
     if (!mask_[p]) continue;
     const auto nodes = islands_.nodes(p);

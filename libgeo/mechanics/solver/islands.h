@@ -111,12 +111,20 @@ class ActiveIslands {
         both, Both(0, 0),
         [&](Both& own, std::uint32_t node) {
           const Both more = term(node);
-          own.first += more.first, keep_larger(own.second, more.second);
+          own.first += more.first;
+          keep_larger(own.second, more.second);
         },
-        [](Both& own, const Both& run) { own.first += run.first, keep_larger(own.second, run.second); });
-    sum.resize(mask_.size(), 0), maximum.resize(mask_.size(), 0);
+        [](Both& own, const Both& run) {
+          own.first += run.first;
+          keep_larger(own.second, run.second);
+        });
+    sum.resize(mask_.size(), 0);
+    maximum.resize(mask_.size(), 0);
     for (std::size_t p = 0; p < mask_.size(); ++p)
-      if (mask_[p]) sum[p] = both[p].first, maximum[p] = both[p].second;
+      if (mask_[p]) {
+        sum[p] = both[p].first;
+        maximum[p] = both[p].second;
+      }
   }
   /// Replaces the entries of the selected islands by their square roots.
   void take_square_roots(std::vector<double>& values) const {

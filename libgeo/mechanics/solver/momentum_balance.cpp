@@ -28,7 +28,8 @@ MomentumBalance::MomentumBalance(const IncrementalPotential& potential, const Ac
   std::vector<char> held(islands_.free_count(), 0);
   for (std::size_t i = 0; i < problem.solid.size(); ++i) {
     const auto f = islands_.free_of_nodes()[i];
-    mass_[f] += problem.solid.mass[i], island_[f] = islands_.of(i);
+    mass_[f] += problem.solid.mass[i];
+    island_[f] = islands_.of(i);
     if (is_fixed(problem.environment, i) || !active[islands_.of(i)]) held[f] = 1;
     if (potential.is_touched(i)) moves_[f] = 1;
   }
@@ -66,7 +67,8 @@ void MomentumBalance::mark_unbalanced(const std::vector<Vec3>& direction, int it
   std::vector<double> size(mass_.size(), 0);
   for (std::size_t k = 0; k < terms_.size(); ++k)
     for (const auto& [f, weight] : terms_[k].weight) {
-      error[f] += weight * (found[k] - promised[k]), size[f] += std::abs(weight) * promised[k].norm();
+      error[f] += weight * (found[k] - promised[k]);
+      size[f] += std::abs(weight) * promised[k].norm();
       const bool is_estimated = !terms_[k].term.potential->within_components() && iterate < least_iterates;
       if (is_estimated && !promised[k].isZero(0)) unbalanced[island_[f]] = 1;
     }
@@ -171,7 +173,10 @@ std::vector<Vec3> MomentumBalance::solved() const {
   double before = 0, first = 0;
   for (int k = 0; k < most_iterations; ++k) {
     double rz = 0;
-    for (std::size_t f = 0; f < n; ++f) z[f] = inverse[f] * r[f], rz += r[f].dot(z[f]);
+    for (std::size_t f = 0; f < n; ++f) {
+      z[f] = inverse[f] * r[f];
+      rz += r[f].dot(z[f]);
+    }
     if (k == 0) first = rz;
     if (!(rz > reduction * first)) break;
     for (std::size_t f = 0; f < n; ++f) p[f] = z[f] + (k == 0 ? 0 : rz / before) * p[f];
@@ -180,7 +185,10 @@ std::vector<Vec3> MomentumBalance::solved() const {
     for (std::size_t f = 0; f < n; ++f) curvature += p[f].dot(hp[f]);
     if (!(curvature > 0)) break;
     const double step = rz / curvature;
-    for (std::size_t f = 0; f < n; ++f) x[f] += step * p[f], r[f] -= step * hp[f];
+    for (std::size_t f = 0; f < n; ++f) {
+      x[f] += step * p[f];
+      r[f] -= step * hp[f];
+    }
     before = rz;
   }
   return x;

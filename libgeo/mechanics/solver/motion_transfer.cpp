@@ -18,7 +18,10 @@ struct Momenta {
   Vec3 moment = Vec3::Zero(), linear = Vec3::Zero(), angular = Vec3::Zero();  // moment: Σ m x
   Mat3 inertia = Mat3::Zero();
   void add(double m, const Vec3& x, const Vec3& v) {
-    mass += m, moment += m * x, linear += m * v, angular += m * x.cross(v);
+    mass += m;
+    moment += m * x;
+    linear += m * v;
+    angular += m * x.cross(v);
     inertia += m * (x.squaredNorm() * Mat3::Identity() - x * x.transpose());
   }
   friend Momenta operator+(const Momenta& a, const Momenta& b) {
@@ -69,12 +72,15 @@ std::pair<Vec3, Vec3> motion_at(const Vec3& x, std::size_t donor, const SolidDis
   auto [displacement, velocity] = extended(donor);
   double sum = weight(donor);
   if (!(sum > 0)) return {displacement, velocity};
-  displacement *= sum, velocity *= sum;
+  displacement *= sum;
+  velocity *= sum;
   for (const auto j : before.mls[donor].neighbors) {
     const double w = before.mls.quality(j) == MomentQuality::good ? weight(j) : 0;
     if (!(w > 0)) continue;
     const auto [own_displacement, own_velocity] = extended(j);
-    sum += w, displacement += w * own_displacement, velocity += w * own_velocity;
+    sum += w;
+    displacement += w * own_displacement;
+    velocity += w * own_velocity;
   }
   return {displacement / sum, velocity / sum};
 }
@@ -97,7 +103,8 @@ std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const No
                             nodes.radius, state);
   });
   for (std::size_t i = old_count; i < n; ++i) {
-    state.displacement.push_back(motion[i - old_count].first), state.velocity.push_back(motion[i - old_count].second);
+    state.displacement.push_back(motion[i - old_count].first);
+    state.velocity.push_back(motion[i - old_count].second);
     if (!state.acceleration.empty())
       state.acceleration.push_back(Vec3(state.acceleration[old_donor(i, old_count, donors)]));
   }
@@ -144,7 +151,8 @@ void restore_momenta(const SolidDiscretisation& solid, const std::vector<double>
   std::vector<char> is_stale(solid.components, 0);
   std::vector<Momenta> change(solid.components);  // before less after
   const auto add = [&](std::uint32_t c, double m, const Vec3& x, const Vec3& v) {
-    is_stale[c] = 1, change[c].add(m, x, v);
+    is_stale[c] = 1;
+    change[c].add(m, x, v);
   };
   auto next = moved.begin();
   for (std::size_t i = 0; i < old_count; ++i) {
@@ -196,7 +204,9 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
   const std::vector<double> mass_before = mass;
   const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
   if (!state.displacement.empty()) moved = extend_motion(*this, nodes, old_count, donors, updated, state);
-  volume = nodes.volume, spacing = nodes.spacing, position = nodes.position;
+  volume = nodes.volume;
+  spacing = nodes.spacing;
+  position = nodes.position;
   mass.resize(n);
   for (std::size_t i = old_count; i < n; ++i) materials.add_node(donors[i - old_count].index());
   for (std::size_t i = 0; i < n; ++i) mass[i] = materials.of(i).density * volume[i];

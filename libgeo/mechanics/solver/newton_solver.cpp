@@ -32,7 +32,8 @@ NewtonSolver::NewtonSolver(const StepProblem& problem, SolverCache& cache)
       accuracy_(potential_.islands().count(), problem.accuracy),
       length_(potential_.islands().count(), 0),
       moved_(potential_.islands().count(), std::numeric_limits<double>::max()) {
-  direction_.step.resize(problem.solid.size()), direction_.residual.resize(potential_.islands().count(), 0);
+  direction_.step.resize(problem.solid.size());
+  direction_.residual.resize(potential_.islands().count(), 0);
 }
 
 bool NewtonSolver::solve(StepReport& report) {
@@ -87,7 +88,10 @@ void NewtonSolver::update_accuracy() {
 void NewtonSolver::linearise_stale() {
   std::vector<char> stale(moved_.size(), 0);
   for (std::size_t p = 0; p < stale.size(); ++p)
-    if (active_[p] && moved_[p] > stale_after) stale[p] = 1, moved_[p] = 0;
+    if (active_[p] && moved_[p] > stale_after) {
+      stale[p] = 1;
+      moved_[p] = 0;
+    }
   if (!any(stale)) return;
   ActiveIslands islands = active_;
   islands.select(stale);
@@ -112,7 +116,10 @@ std::vector<char> NewtonSolver::unconverged(const std::vector<RigidMotion>& rota
     if (!active_[p] || rotates[p]) continue;
     const bool is_last = length_[p] * (length_[p] + moved_[p]) < StepProblem::quadratic_tolerance(accuracy_[p]) &&
                          direction_.residual[p] < accuracy_[p];
-    if (is_last) searching[p] = 0, at_.response.energy[p] += energy_change[p];
+    if (is_last) {
+      searching[p] = 0;
+      at_.response.energy[p] += energy_change[p];
+    }
   }
   return searching;
 }
@@ -135,7 +142,9 @@ bool NewtonSolver::line_search(const std::vector<RigidMotion>& rotations, std::v
     for (std::size_t p = 0; p < searching.size(); ++p) {
       if (!searching[p]) continue;
       if (value[p] <= at_.value[p] + rounding * std::abs(at_.value[p])) {
-        searching[p] = 0, at_.value[p] = value[p], moved_[p] += share[p] * length_[p];
+        searching[p] = 0;
+        at_.value[p] = value[p];
+        moved_[p] += share[p] * length_[p];
       } else if (halvings == most_halvings) {
         if (!(length_[p] * share[p] < problem_.accuracy)) return false;
         active[p] = searching[p] = 0;

@@ -63,7 +63,8 @@ std::vector<StressSums> nodal_stress_sums(const Solid& solid, const NodeSet& nod
       const Mat3 elastic =
           state.plastic.empty() ? f : Mat3(f * inverse_plastic_stretch(state.plastic[points.first_point(b) + i]));
       if (!stress(solid.materials()[block.points[i].material], f, elastic, components)) continue;
-      std::copy(components.begin(), components.end(), out + 8 * i), out[8 * i + 6] = 1;
+      std::copy(components.begin(), components.end(), out + 8 * i);
+      out[8 * i + 6] = 1;
     }
   };
   return nodal_stress_sums(solid, nodes, state, BlockStress(block_stress));

@@ -48,7 +48,10 @@ std::vector<char> mostly_affine(const IncrementalPotential& potential, const Act
   all.sum(mean, Vec3(Vec3::Zero()), [&](std::size_t i) -> Vec3 { return m(i) * field[i]; });
   all.sum(squares, 0.0, [&](std::size_t i) { return m(i) * field[i].squaredNorm(); });
   for (std::size_t p = 0; p < mass.size(); ++p)
-    if (mass[p] > 0) centre[p] /= mass[p], mean[p] /= mass[p];
+    if (mass[p] > 0) {
+      centre[p] /= mass[p];
+      mean[p] /= mass[p];
+    }
   all.sum(moment, Mat3(Mat3::Zero()), [&](std::size_t i) -> Mat3 { return m(i) * arm(i) * arm(i).transpose(); });
   all.sum(product, Mat3(Mat3::Zero()), [&](std::size_t i) -> Mat3 { return m(i) * field[i] * arm(i).transpose(); });
   std::vector<char> affine(mass.size());
@@ -96,7 +99,10 @@ std::vector<char> warm_start(IncrementalPotential& potential, const FiniteRotati
   potential.evaluate(all, start, value_at_start);
   const std::vector<Vec3> rotated = rotation.predict(at.u, rotates);
   for (std::size_t p = 0; p < islands; ++p) rotates[p] = rotates[p] && candidate[p];
-  if (!rotated.empty()) all.select(rotates), potential.evaluate(all, rotated, value_rotated);
+  if (!rotated.empty()) {
+    all.select(rotates);
+    potential.evaluate(all, rotated, value_rotated);
+  }
   for (std::size_t p = 0; p < islands; ++p) {
     rotates[p] = rotates[p] && value_rotated[p] < std::min(at.value[p], value_at_start[p]);
     if (!candidate[p] || rotates[p]) continue;
@@ -117,7 +123,8 @@ std::vector<char> warm_start(IncrementalPotential& potential, const FiniteRotati
 
 NewtonIterate predict(IncrementalPotential& potential, const FiniteRotation& rotation, ActiveIslands all) {
   NewtonIterate at;
-  at.u = inertial_prediction(potential, all), at.force.resize(at.u.size());
+  at.u = inertial_prediction(potential, all);
+  at.force.resize(at.u.size());
   potential.evaluate(all, at.u, at.value, &at.response);
   potential.force(all, at.u, at.response, at.force);
   all.select(warm_start(potential, rotation, all, at));

@@ -19,8 +19,11 @@ struct Moments {
   Vec3 arm = Vec3::Zero(), displacement = Vec3::Zero();
   Mat3 arm_arm = Mat3::Zero(), displacement_arm = Mat3::Zero();  // Σ m a aᵀ, Σ m d aᵀ
   void operator+=(const Moments& o) {
-    mass += o.mass, arm += o.arm, displacement += o.displacement;
-    arm_arm += o.arm_arm, displacement_arm += o.displacement_arm;
+    mass += o.mass;
+    arm += o.arm;
+    displacement += o.displacement;
+    arm_arm += o.arm_arm;
+    displacement_arm += o.displacement_arm;
   }
 };
 
@@ -28,7 +31,8 @@ RigidMotion motion_of(const Moments& sums, const Vec3& base, Freedom freedom) {
   RigidMotion motion;
   if (!(sums.mass > 0)) return motion;
   const Vec3 arm = sums.arm / sums.mass;
-  motion.centre = base + arm, motion.translation = sums.displacement / sums.mass;
+  motion.centre = base + arm;
+  motion.translation = sums.displacement / sums.mass;
   // About the centre of mass.
   const Mat3 moment = sums.arm_arm / sums.mass - arm * arm.transpose(),
              product = sums.displacement_arm / sums.mass - motion.translation * arm.transpose();
@@ -79,7 +83,10 @@ std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& set, co
         const auto p = set[i];
         if (freedom[p] == Freedom::none) continue;
         auto entry = std::find_if(run.rbegin(), run.rend(), [&](const auto& e) { return e.first == p; });
-        if (entry == run.rend()) run.emplace_back(p, Moments()), entry = run.rbegin();
+        if (entry == run.rend()) {
+          run.emplace_back(p, Moments());
+          entry = run.rbegin();
+        }
         const Vec3 arm = from(i) - base[p], d = displacement(i), weighted = mass[i] * d;
         entry->second +=
             Moments{mass[i], mass[i] * arm, weighted, mass[i] * arm * arm.transpose(), weighted * arm.transpose()};

@@ -83,7 +83,8 @@ void SchwarzPreconditioner::load(std::size_t subdomain, bool isotropic, const st
   const auto nodes = subdomains_.nodes(subdomain);
   const Mat3f turn = isotropic ? Mat3f::Identity() : rotation_[subdomain];
   for (std::size_t k = 0; k < 9; ++k) to.turn[8 * k + lane] = turn.data()[k];
-  to.shear[lane] = moduli_of(subdomain).shear, to.bulk[lane] = moduli_of(subdomain).bulk;
+  to.shear[lane] = moduli_of(subdomain).shear;
+  to.bulk[lane] = moduli_of(subdomain).bulk;
   const auto is_fixed = [&](std::size_t a) { return !fixed.empty() && fixed[nodes[a]]; };
   const float* from = subdomains_.outer_products(subdomain);
   float* tile = &to.tiles[lane];
@@ -118,7 +119,8 @@ void SchwarzPreconditioner::solve(const std::vector<Vec3>& r, std::span<const st
       const std::size_t p = subdomains[k];
       const auto nodes = subdomains_.nodes(p);
       const std::size_t size = 3 * nodes.size();
-      x.resize(padded(size)), y.resize(padded(size));
+      x.resize(padded(size));
+      y.resize(padded(size));
       const Mat3f &turn = rotation_[p], back = turn.transpose();
       for (std::size_t a = 0; a < nodes.size(); ++a)
         Eigen::Map<Eigen::Vector3f>{&x[3 * a]} = back * r[nodes[a]].cast<float>();

@@ -50,7 +50,8 @@ Solid::Solid(const NodeSet& nodes, const VisibilityGraph& graph, Materials mater
 }
 
 void Solid::update(const Body& body, const BodyDelta& delta, State& state) {
-  update_nodes(body, delta, state), update_points(body, state);
+  update_nodes(body, delta, state);
+  update_points(body, state);
 }
 
 void Solid::update(const NodeSet& nodes, const VisibilityGraph& graph, NodeId first_new, std::span<const NodeId> donors,
@@ -111,8 +112,10 @@ MomentQualityCounts Solid::moment_quality_counts() const {
   MomentQualityCounts counts;
   for (std::size_t i = 0; i < d.size(); ++i) ++counts.nodes[static_cast<std::size_t>(d.mls.quality(i))];
   for (const PointBlock& b : d.points.blocks)
-    for (const MaterialPoint& p : b.points)
-      ++counts.points[static_cast<std::size_t>(p.quality)], counts.widened += p.widenings > 0;
+    for (const MaterialPoint& p : b.points) {
+      ++counts.points[static_cast<std::size_t>(p.quality)];
+      counts.widened += p.widenings > 0;
+    }
   return counts;
 }
 
@@ -152,7 +155,8 @@ Mat3 Solid::stress_at(const State& state, const Vec3& x, double radius,
       const double j = f.determinant();
       if (!(j > 0)) continue;  // inverted: it has no Cauchy stress
       const Mat3 cauchy = stress(d.materials[p.material], f) * f.transpose() / j;
-      sum += 0.5 * w * (cauchy + cauchy.transpose()), total += w;
+      sum += 0.5 * w * (cauchy + cauchy.transpose());
+      total += w;
     }
   }
   return total > 0 ? Mat3(sum / total) : sum;

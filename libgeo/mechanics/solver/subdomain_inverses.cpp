@@ -11,13 +11,17 @@
 namespace geo {
 
 void SubdomainInverses::begin(const Subdomains& subdomains) {
-  node_.assign(1, 0), first_.assign(1, 0);
+  node_.assign(1, 0);
+  first_.assign(1, 0);
   for (std::size_t p = 0; p < subdomains.count(); ++p) {
     const std::size_t nodes = subdomains.nodes(p).size();
-    node_.push_back(node_.back() + nodes), first_.push_back(first_.back() + 3 * nodes * padded(3 * nodes));
+    node_.push_back(node_.back() + nodes);
+    first_.push_back(first_.back() + 3 * nodes * padded(3 * nodes));
   }
   matrix_ = UninitializedArray<std::uint16_t>(first_.back());
-  terms_.resize(node_.back()), moduli_.resize(subdomains.count()), valid_.assign(subdomains.count(), 0);
+  terms_.resize(node_.back());
+  moduli_.resize(subdomains.count());
+  valid_.assign(subdomains.count(), 0);
 }
 
 void SubdomainInverses::update(const Subdomains& subdomains, std::span<const std::uint32_t> former) {
@@ -29,7 +33,8 @@ void SubdomainInverses::update(const Subdomains& subdomains, std::span<const std
       if (o >= before.count() || !before.valid_[o]) continue;
       std::copy_n(before.matrix(o), before.first_[o + 1] - before.first_[o], matrix(p));
       std::copy(&before.terms_[before.node_[o]], &before.terms_[0] + before.node_[o + 1], &terms_[node_[p]]);
-      moduli_[p] = before.moduli_[o], valid_[p] = 1;
+      moduli_[p] = before.moduli_[o];
+      valid_[p] = 1;
     }
   });
 }
@@ -41,7 +46,8 @@ bool SubdomainInverses::is_valid(std::size_t p, std::span<const DiagonalTerm> te
 }
 
 void SubdomainInverses::set_valid(std::size_t p, std::span<const DiagonalTerm> terms, const Moduli& moduli) {
-  valid_[p] = !terms.empty(), moduli_[p] = moduli;
+  valid_[p] = !terms.empty();
+  moduli_[p] = moduli;
   std::copy(terms.begin(), terms.end(), terms_.begin() + static_cast<std::ptrdiff_t>(node_[p]));
 }
 

@@ -59,7 +59,10 @@ void OuterProducts(const PointBlock& block, const std::uint32_t* first, const Su
     const auto from = block.entry_begin[i], to = block.entry_begin[i + 1];
     entries.resize(to - from);
     std::size_t used = 0;  // few entries, in no order that a processor predicts: no branch
-    for (auto q = from; q < to; ++q) entries[used] = q, used += belongs[block.entry_node[q]];
+    for (auto q = from; q < to; ++q) {
+      entries[used] = q;
+      used += belongs[block.entry_node[q]];
+    }
     for (std::size_t e = 0; e < used; ++e) {
       const auto node = block.entry_node[entries[e]];
       const float* const g = &block.entry_gradient_single[3 * std::size_t(entries[e])];
@@ -148,9 +151,12 @@ HWY_INLINE Tile inverse(Tile t, const Vector (&least)[3]) {
     const auto over = hn::IfThenElseZero(hn::Gt(t.at[k][k], least[k]), hn::Div(one, t.at[k][k])), by = t.at[i][k],
                next = t.at[j][k];
     const auto own = hn::Mul(by, over), other = hn::Mul(next, over);
-    t.at[i][i] = hn::NegMulAdd(by, own, t.at[i][i]), t.at[j][j] = hn::NegMulAdd(next, other, t.at[j][j]);
+    t.at[i][i] = hn::NegMulAdd(by, own, t.at[i][i]);
+    t.at[j][j] = hn::NegMulAdd(next, other, t.at[j][j]);
     t.at[i][j] = t.at[j][i] = hn::NegMulAdd(by, other, t.at[i][j]);
-    t.at[i][k] = t.at[k][i] = own, t.at[j][k] = t.at[k][j] = other, t.at[k][k] = hn::Neg(over);
+    t.at[i][k] = t.at[k][i] = own;
+    t.at[j][k] = t.at[k][j] = other;
+    t.at[k][k] = hn::Neg(over);
   }
   for (auto& row : t.at)
     for (auto& x : row) x = hn::Neg(x);
@@ -225,9 +231,11 @@ void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* 
     auto sum = hn::Zero(d), next = hn::Zero(d);
     for (std::size_t j = 0; j < size; ++j) {
       const auto by = hn::Set(d, x[j]);
-      sum = hn::MulAdd(by, column(j * row + at), sum), next = hn::MulAdd(by, column(j * row + at + wide), next);
+      sum = hn::MulAdd(by, column(j * row + at), sum);
+      next = hn::MulAdd(by, column(j * row + at + wide), next);
     }
-    hn::StoreU(sum, d, out + at), hn::StoreU(next, d, out + at + wide);
+    hn::StoreU(sum, d, out + at);
+    hn::StoreU(next, d, out + at + wide);
   }
   for (; at < row; at += wide) {
     auto sum = hn::Zero(d);
@@ -251,9 +259,14 @@ void add_outer_products(const PointBlock& block, std::span<const std::uint32_t> 
 }
 void EightSubdomains::begin(std::size_t count) {
   nodes = count;
-  tiles.assign(72 * (count * (count + 1) / 2), 0), blocks.assign(72 * count, 0), share.assign(8 * count, 0),
-      turn.fill(0), shear.fill(0), bulk.fill(0);
-  halves.resize(tiles.size()), scratch.resize(96 * count);
+  tiles.assign(72 * (count * (count + 1) / 2), 0);
+  blocks.assign(72 * count, 0);
+  share.assign(8 * count, 0);
+  turn.fill(0);
+  shear.fill(0);
+  bulk.fill(0);
+  halves.resize(tiles.size());
+  scratch.resize(96 * count);
 }
 void invert_positive(EightSubdomains& subdomains) { HWY_DYNAMIC_DISPATCH(InvertPositive)(subdomains); }
 void multiply_halves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {

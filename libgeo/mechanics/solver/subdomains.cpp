@@ -46,7 +46,10 @@ void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, c
   const auto divide_upper = [&](Leaves& out) {
     divide(position, nodes.subspan(below), centre + step, quarter, depth + 1, out);
   };
-  if (nodes.size() < worth_a_thread) return divide_lower(leaves), divide_upper(leaves);
+  if (nodes.size() < worth_a_thread) {
+    divide_lower(leaves);
+    return divide_upper(leaves);
+  }
   Leaves upper_leaves;
   parallel_invoke([&] { divide_lower(leaves); }, [&] { divide_upper(upper_leaves); });
   leaves.insert(leaves.end(), upper_leaves.begin(), upper_leaves.end());
@@ -71,7 +74,8 @@ std::vector<std::vector<std::uint32_t>> subdomains_in(const SubdomainInput& inpu
   std::vector<std::uint32_t> core;
   for (const auto i : nodes) {
     if (visited[i]) continue;
-    visited[i] = 1, core.assign(1, i);
+    visited[i] = 1;
+    core.assign(1, i);
     for (std::size_t k = 0; k < core.size(); ++k)
       for (const auto j : input.mls[core[k]].neighbors)
         if (box[j] == box[i] && !std::exchange(visited[j], 1)) core.push_back(j);
@@ -111,7 +115,9 @@ std::vector<std::uint32_t> Subdomains::update(const SubdomainInput& input, const
     for (const Incidence& at : before.subdomains_of(now[0])) {
       const auto was = before.nodes(at.subdomain);
       if (before.outer_[at.subdomain].empty() || !std::equal(now.begin(), now.end(), was.begin(), was.end())) continue;
-      outer_[p] = std::move(before.outer_[at.subdomain]), point_[p] = before.point_[at.subdomain], stale[p] = 0,
+      outer_[p] = std::move(before.outer_[at.subdomain]);
+      point_[p] = before.point_[at.subdomain];
+      stale[p] = 0;
       former[p] = at.subdomain;
       if (point_[p].first != ~0u) point_[p].first = changes.new_block[point_[p].first];
       break;
@@ -129,7 +135,8 @@ void Subdomains::list(const SubdomainInput& input, const Subdomains* before, con
   }
   first_of_box_.push_back(static_cast<std::uint32_t>(all.size()));
   index(all, input.position.size());
-  outer_.resize(count()), point_.assign(count(), {~0u, 0});
+  outer_.resize(count());
+  point_.assign(count(), {~0u, 0});
 }
 
 // The node lists of the subdomains of each leaf. A leaf with the same nodes as before, none of them
@@ -200,7 +207,8 @@ BlockOuterProducts Subdomains::sum_block(const PointBlock& block, std::span<cons
   sums.subdomains.assign(subdomains.begin(), subdomains.end());
   sums.first.assign(1, 0);
   for (const auto p : subdomains) sums.first.push_back(sums.first.back() + outer_size(nodes(p).size()));
-  sums.outer.assign(sums.first.back(), 0), sums.best_point.assign(subdomains.size(), {0, 0});
+  sums.outer.assign(sums.first.back(), 0);
+  sums.best_point.assign(subdomains.size(), {0, 0});
   std::vector<std::uint32_t> first(1, 0);
   std::vector<Incidence> places;  // per node of the block: indices into sums.subdomains, and slots
   for (const auto j : block.nodes) {
@@ -250,8 +258,10 @@ void Subdomains::sum_points(const MaterialPoints& points, const std::vector<char
       for (const auto& [t, k] : sources[p]) {
         const BlockOuterProducts& sums = block_sums[t];
         for (std::size_t i = 0; i < outer_[p].size(); ++i) outer_[p][i] += sums.outer[sums.first[k] + i];
-        if (sums.best_point[k].nodes > most_nodes)
-          most_nodes = sums.best_point[k].nodes, point_[p] = {tasks[t].block, sums.best_point[k].point};
+        if (sums.best_point[k].nodes > most_nodes) {
+          most_nodes = sums.best_point[k].nodes;
+          point_[p] = {tasks[t].block, sums.best_point[k].point};
+        }
       }
       for (std::size_t i = 3; i < outer_[p].size(); i += 4) outer_[p][i] = 0;
     }

@@ -64,7 +64,8 @@ struct LaggedFriction {
   /// `slip`: s; `normal_projector`: n nᵀ; `last_slip`: s', zero in the first iterate.
   void add(const Vec3& slip, const Mat3& normal_projector, const Vec3& last_slip, Vec3& force, Mat3& hessian) const {
     const double length = slip.norm(), stiffness = secant_stiffness(length);
-    force -= stiffness * slip, hessian += stiffness * (Mat3::Identity() - normal_projector);
+    force -= stiffness * slip;
+    hessian += stiffness * (Mat3::Identity() - normal_projector);
     if (length > slip_regularisation && !last_slip.isZero(0)) {
       const double settled = std::max(0.0, 1 - 0.5 * (slip - last_slip).norm() / length);
       hessian -= settled * stiffness / (length * length) * slip * slip.transpose();
@@ -90,9 +91,11 @@ struct FrictionMemory {
   /// Begins an iterate. Returns the change of the normal force that the bound is of, if that was
   /// estimated.
   double begin_iterate(const Vec3& new_slip, double normal) {
-    last_slip = slip, slip = new_slip;
+    last_slip = slip;
+    slip = new_slip;
     const double change = has_iterate && kind == NormalForce::estimated ? normal - normal_force : 0;
-    normal_force += change, has_iterate = true;
+    normal_force += change;
+    has_iterate = true;
     return change;
   }
 };

@@ -24,9 +24,12 @@ PotentialSum::PotentialSum(std::span<Potential* const> potentials, const std::ve
         terms_.push_back({p, static_cast<std::uint32_t>(k), stencil[0].node, p->activation_distance(k)});
         stencils_.push_back(stencil);
       }
-  displacement_.assign(terms_.size(), Vec3::Zero()), force_ = displacement_;
+  displacement_.assign(terms_.size(), Vec3::Zero());
+  force_ = displacement_;
   hessian_.assign(terms_.size(), Hessian::Zero());
-  matrix_of_.assign(terms_.size(), 0), idle_ = matrix_of_, product_.assign(terms_.size(), Eigen::Vector4f::Zero());
+  matrix_of_.assign(terms_.size(), 0);
+  idle_ = matrix_of_;
+  product_.assign(terms_.size(), Eigen::Vector4f::Zero());
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> PotentialSum::coupled_components(
@@ -75,7 +78,8 @@ void PotentialSum::add_energy(const std::vector<Vec3>& u, std::span<const std::u
       terms.size(), u, [&](std::size_t k) { return stencils_[terms[k]]; },
       [&](std::size_t k, const Vec3& d) {
         const auto t = terms[k];
-        displacement_[t] = d, energy[k] = terms_[t].potential->energy(terms_[t].index, d);
+        displacement_[t] = d;
+        energy[k] = terms_[t].potential->energy(terms_[t].index, d);
       });
   for (std::size_t k = 0; k < terms.size(); ++k) sum[island[terms_[terms[k]].first_node]] += energy[k];
 }
@@ -86,7 +90,8 @@ void PotentialSum::update_derivatives(std::span<const std::uint32_t> island, con
     for (std::size_t k = begin; k < end; ++k) {
       const auto t = terms[k];
       const auto derivatives = terms_[t].potential->derivatives(terms_[t].index, displacement_[t]);
-      force_[t] = derivatives.force, hessian_[t].topRows<3>() = derivatives.hessian.cast<float>();
+      force_[t] = derivatives.force;
+      hessian_[t].topRows<3>() = derivatives.hessian.cast<float>();
     }
   });
   update_matrices();
@@ -112,7 +117,8 @@ void PotentialSum::update_matrices() {
   for (std::uint32_t t = 0; t < terms_.size(); ++t) {
     if (matrix_of_[t] == 1) continue;
     if (matrix_of_[t] == 0 && force_[t].isZero(0) && hessian_[t].isZero(0)) continue;
-    grown |= matrix_of_[t] == 0, matrix_of_[t] = 2;
+    grown |= matrix_of_[t] == 0;
+    matrix_of_[t] = 2;
     terms.push_back(t);
   }
   if (!grown) return;
@@ -122,8 +128,12 @@ void PotentialSum::update_matrices() {
   }
   terms.clear();
   for (std::uint32_t t = 0; t < terms_.size(); ++t)
-    if (matrix_of_[t]) matrix_of_[t] = 1, terms.push_back(t);
-  matrices_[0] = StencilMatrix(terms, stencils_, start_.size()), matrices_[1] = {};
+    if (matrix_of_[t]) {
+      matrix_of_[t] = 1;
+      terms.push_back(t);
+    }
+  matrices_[0] = StencilMatrix(terms, stencils_, start_.size());
+  matrices_[1] = {};
 }
 
 std::vector<PotentialSum::LinearisedTerm> PotentialSum::linearised_terms() const {
@@ -148,7 +158,10 @@ void PotentialSum::multiply_hessian(const std::vector<Vec3>& p) {
   if (matrices_[0].size() == 0) return;
   single_precision_.resize(start_.size());
   parallel_for(start_.size(), 8192, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) single_precision_[i] << p[i].cast<float>(), 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      single_precision_[i] << p[i].cast<float>();
+      0;
+    }
   });
   for (const auto& matrix : matrices_)
     parallel_for(matrix.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {

@@ -26,8 +26,10 @@ StencilMatrix::StencilMatrix(std::span<const std::uint32_t> selected, const std:
       next[chunk].assign(nodes, 0);
       for (std::size_t k = begin_of(chunk); k < begin_of(chunk + 1); ++k) {
         Entry* to = by_stencil_.data() + stencil_begin_[k];
-        for (const auto& e : stencils[selected_[k]])
-          *to++ = {e.node, static_cast<float>(e.weight)}, ++next[chunk][e.node];
+        for (const auto& e : stencils[selected_[k]]) {
+          *to++ = {e.node, static_cast<float>(e.weight)};
+          ++next[chunk][e.node];
+        }
       }
     }
   });
@@ -37,13 +39,15 @@ StencilMatrix::StencilMatrix(std::span<const std::uint32_t> selected, const std:
     for (auto& of_chunk : next) total += std::exchange(of_chunk[n], total);
   }
   node_begin_[nodes] = total;
-  by_node_ = UninitializedArray<Entry>(total), weights_ = UninitializedArray<double>(total);
+  by_node_ = UninitializedArray<Entry>(total);
+  weights_ = UninitializedArray<double>(total);
   parallel_for(chunks, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk)
       for (std::size_t k = begin_of(chunk); k < begin_of(chunk + 1); ++k)
         for (const auto& e : stencils[selected_[k]]) {
           const auto to = next[chunk][e.node]++;
-          by_node_[to] = {selected_[k], static_cast<float>(e.weight)}, weights_[to] = e.weight;
+          by_node_[to] = {selected_[k], static_cast<float>(e.weight)};
+          weights_[to] = e.weight;
         }
   });
 }

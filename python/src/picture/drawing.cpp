@@ -28,10 +28,12 @@ class Scale {
  public:
   Scale(const std::vector<double>& values, const std::optional<std::pair<double, double>>& range) {
     if (range) {
-      low_ = range->first, high_ = range->second;
+      low_ = range->first;
+      high_ = range->second;
     } else if (!values.empty()) {
       const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
-      low_ = *lo, high_ = *hi;
+      low_ = *lo;
+      high_ = *hi;
     }
   }
   view::Color color(double value) const { return view::viridis(high_ > low_ ? (value - low_) / (high_ - low_) : 0.5); }

@@ -82,7 +82,10 @@ TEST_CASE("the broad phase keeps every pair whose boxes meet, each once, from up
       for (std::size_t t = 0; t < boxes.size(); ++t) {
         changed[t] = random.uniform(0, 1) < share;
         const Vec3 move = 0.4 * random.direction();
-        if (changed[t]) boxes[t].lo += move, boxes[t].hi += move;
+        if (changed[t]) {
+          boxes[t].lo += move;
+          boxes[t].hi += move;
+        }
       }
     }
   }
@@ -163,7 +166,8 @@ TEST_CASE("no two triangles of a certified fan cross, and a fan that winds twice
       const double angle = 2 * M_PI * rounds * (i + random.uniform(-0.4, 0.4)) / n;
       at.push_back(turn *
                    (random.uniform(0.5, 2) * Vec3(std::cos(angle), std::sin(angle), rough * random.uniform(-1, 1))));
-      triangles.push_back({0, 1 + i, 1 + (i + 1) % n}), representative.push_back(1 + i);
+      triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
+      representative.push_back(1 + i);
     }
     const auto certified = [&] {
       std::vector<std::uint8_t> result(at.size(), 0);
@@ -180,7 +184,8 @@ TEST_CASE("no two triangles of a certified fan cross, and a fan that winds twice
         crossings += triangles_cross(triangles[s], triangles[t], at, false);
     if (is_certified) CHECK(crossings == 0);
     if (rounds == 2) CHECK(!is_certified);
-    certified_fans += is_certified, twice_round += rounds == 2;
+    certified_fans += is_certified;
+    twice_round += rounds == 2;
     // An open fan is never certified.
     triangles.pop_back();
     CHECK(!certified());

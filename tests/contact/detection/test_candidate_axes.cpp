@@ -89,8 +89,9 @@ TEST_CASE("planes and differences of centroids cull exactly the pairs that they 
             separation_along(difference, simplex_of(s), simplex_of(t), soup.to) > at_last * difference.norm()))
         left_by_centroids.push_back(soup.pairs[i]);
     }
-    separated_by_planes += soup.pairs.size() - left_by_planes.size(),
-        separated_by_centroids += soup.pairs.size() - left_by_centroids.size(), kept_by_planes += left_by_planes.size();
+    separated_by_planes += soup.pairs.size() - left_by_planes.size();
+    separated_by_centroids += soup.pairs.size() - left_by_centroids.size();
+    kept_by_planes += left_by_planes.size();
     for_each_simd_target([&] {
       auto kept = soup.pairs;
       planes.remove_separated(kept, at_first, at_last);
@@ -136,8 +137,11 @@ TEST_CASE(
       if (is_removed) CHECK_FALSE(crosses);
       const auto common =
           std::count_if(s.begin(), s.end(), [&](auto v) { return v == t[0] || v == t[1] || v == t[2]; });
-      removed += is_removed, removed_flat += is_removed && flat, neighbours += is_removed && common > 0,
-          neither += !is_removed && !crosses, crossing += crosses;
+      removed += is_removed;
+      removed_flat += is_removed && flat;
+      neighbours += is_removed && common > 0;
+      neither += !is_removed && !crosses;
+      crossing += crosses;
     }
     for_each_simd_target([&] {
       auto same = soup.pairs;
@@ -168,9 +172,11 @@ TEST_CASE("separations of axes are as stated, the largest between closest points
     for (std::uint32_t c = 0; c < 1 + random.below(CandidateAxes::width); ++c) {
       const auto simplex = [&](double x) {
         Simplex s{{}, 1 + static_cast<int>(random.below(3))};
-        for (int k = 0; k < s.size; ++k)
-          s.v[k] = static_cast<std::uint32_t>(from.size()), from.push_back(Vec3(x, 0, 0) + somewhere(1)),
+        for (int k = 0; k < s.size; ++k) {
+          s.v[k] = static_cast<std::uint32_t>(from.size());
+          from.push_back(Vec3(x, 0, 0) + somewhere(1));
           to.push_back(from.back() + somewhere(0.3));
+        }
         return s;
       };
       const Simplex a = simplex(0), b = simplex(grid ? random.below(4) : random.uniform(0.5, 2.5));
@@ -195,13 +201,15 @@ TEST_CASE("separations of axes are as stated, the largest between closest points
         for (int k = 0; k < 3; ++k) out[k] = from[s.v[std::min(k, s.size - 1)]];
       };
       Vec3 s[3], t[3], between = Vec3::Zero();
-      corners(a, s), corners(b, t);
+      corners(a, s);
+      corners(b, t);
       double of_a = 0, of_b = 0;
       for (int k = 0; k < 3; ++k) {
         CHECK(p.weights_a[k][lane] >= 0);
         CHECK(p.weights_b[k][lane] >= 0);
-        between += p.weights_a[k][lane] * s[k] - p.weights_b[k][lane] * t[k], of_a += p.weights_a[k][lane],
-            of_b += p.weights_b[k][lane];
+        between += p.weights_a[k][lane] * s[k] - p.weights_b[k][lane] * t[k];
+        of_a += p.weights_a[k][lane];
+        of_b += p.weights_b[k][lane];
       }
       CHECK(std::abs(of_a - 1) + std::abs(of_b - 1) < 1e-12);
       if (p.start_separation[CandidateAxes::between_closest][lane] < 1e-6) continue;

@@ -71,7 +71,8 @@ TEST_CASE("every pair that comes within reach is a candidate, separated at the s
             closest_points(p, 3, q, 3).difference.norm() < motion.reach || triangles_cross(a, b, m.to, false);
         const bool is_candidate = found.contains(std::minmax(a, b));
         if (near) REQUIRE(is_candidate);
-        within += near, others += is_candidate && !near;
+        within += near;
+        others += is_candidate && !near;
         const Vec3 up(0, 0, 1);
         if (s < m.triangles.size() / 2 && t >= m.triangles.size() / 2 &&
             separation_along(up, simplex_of(b), simplex_of(a), m.from) > 0.2 &&
@@ -104,7 +105,10 @@ TEST_CASE("a wild motion has the candidates of a part of it, whatever the broad 
       m.triangles,
       [&](std::size_t t) {
         Box3 box;
-        for (const auto v : m.triangles[t]) box.add(m.from[v]), box.add(m.to[v]);
+        for (const auto v : m.triangles[t]) {
+          box.add(m.from[v]);
+          box.add(m.to[v]);
+        }
         return box;
       },
       0);

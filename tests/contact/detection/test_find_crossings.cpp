@@ -18,11 +18,15 @@ TEST_CASE("the sheets of a new crack touch, and cross when one passes through th
   TriangleMesh m;
   for (int copy = 0; copy < 2; ++copy)
     for (int i = 0; i < 6; ++i)
-      if (copy == 0 || i >= 2)
-        m.vertices.push_back({double(i % 2), double(i / 2), 0}), m.site.push_back(static_cast<std::uint32_t>(i));
+      if (copy == 0 || i >= 2) {
+        m.vertices.push_back({double(i % 2), double(i / 2), 0});
+        m.site.push_back(static_cast<std::uint32_t>(i));
+      }
   const auto other = [](std::uint32_t v) { return v < 2 ? v : v + 4; };
-  for (const Triangle t : {Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{2, 3, 4}, Triangle{4, 3, 5}})
-    m.triangles.push_back(t), m.triangles.push_back({other(t[0]), other(t[2]), other(t[1])});
+  for (const Triangle t : {Triangle{0, 1, 2}, Triangle{2, 1, 3}, Triangle{2, 3, 4}, Triangle{4, 3, 5}}) {
+    m.triangles.push_back(t);
+    m.triangles.push_back({other(t[0]), other(t[2]), other(t[1])});
+  }
   CHECK(count_crossings(m) == 0);
   for (std::size_t v = 6; v < 10; ++v) m.vertices[v].z() = 0.25;  // opened at the far end, joined at the front
   CHECK(count_crossings(m) == 0);
@@ -72,7 +76,8 @@ TEST_CASE("crossings of crumpled, torn and two-sided surfaces are those of a dou
       for (auto& v : other) {
         if (random.below(4) == 0) continue;  // joined there
         if (copy[v] == ~0u) {
-          copy[v] = static_cast<std::uint32_t>(m.vertices.size()), site.push_back(v);
+          copy[v] = static_cast<std::uint32_t>(m.vertices.size());
+          site.push_back(v);
           m.vertices.push_back(random.below(3) == 0 ? Vec3(m.vertices[v] + 0.1 * random.direction())
                                                     : Vec3(m.vertices[v]));
         }
@@ -147,7 +152,7 @@ TEST_CASE("surfaces beyond the range of floats are counted like others") {
   for (const double scale : {1.0, 0x1p100, 0x1p130, 0x1p198}) {  // exact; floats end before 2¹²⁸
     INFO(scale);
     TriangleMesh few;  // each box is larger than the largest float
-    few.vertices = {{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}},
+    few.vertices = {{-1, -1, -1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
     few.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
     for (Vec3& p : few.vertices) p *= scale;
     CHECK(count_crossings(few) == 0);

@@ -28,7 +28,8 @@ struct Triangles {
       triangles.push_back({base, base + 1, base + 2});
       for (std::uint32_t t = 0; t + 1 < triangles.size(); ++t)
         if (triangles_cross(triangles[t], triangles.back(), from, false)) {
-          triangles.pop_back(), from.resize(base);
+          triangles.pop_back();
+          from.resize(base);
           break;
         }
     }
@@ -80,7 +81,9 @@ TEST_CASE("pairs that cross at some time of a motion are uncertified, also after
         const bool is_certified = !std::binary_search(found.begin(), found.end(), pair),
                    crosses = crosses_in_motion(m, next, pair);
         if (is_certified) REQUIRE_FALSE(crosses);
-        certified += is_certified, uncertified += !is_certified, crossing += crosses;
+        certified += is_certified;
+        uncertified += !is_certified;
+        crossing += crosses;
       }
       // Some triangles go elsewhere.
       for (std::size_t t = 0; t < m.triangles.size(); ++t) {

@@ -46,7 +46,8 @@ TEST_CASE("the two sides of a folded sheet cut in a bent body coincide", "[campa
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     SampleOptions sampling;
-    sampling.spacing = 0.27, sampling.seed = seed;
+    sampling.spacing = 0.27;
+    sampling.seed = seed;
     const TriangleMesh mesh = make_block({1, 1, 1}, 0.2);
     Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling), {26, NeighborMethod::automatic});
     Solid solid(body.nodes, body.graph, Material());

@@ -56,7 +56,8 @@ TEST_CASE("nothing moves without crossings among marked triangles", "[untangle]"
   CHECK(t.untangle(0.001).empty());
   CHECK(t.positions == t.rest);
   t = swapped(0.01);
-  t.positions[4] = {0, 0.5, -0.003}, t.positions[5] = {0.5, -0.5, -0.003};
+  t.positions[4] = {0, 0.5, -0.003};
+  t.positions[5] = {0.5, -0.5, -0.003};
   const auto before = t.positions;
   t.marked = {0, 0};
   CHECK(t.untangle(0.001).empty());
@@ -66,13 +67,24 @@ TEST_CASE("nothing moves without crossings among marked triangles", "[untangle]"
 TEST_CASE("fresh triangles are untangled along the deformed direction, and moved ones are marked", "[untangle]") {
   // The material has turned by a right angle about x: rest z is now y.
   Mat3 turn;
-  turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  turn << 1;
+  0;
+  0;
+  0;
+  0;
+  1;
+  0;
+  -1;
+  0;
   Tangle t = swapped(0.01);
-  t.positions[4] = {0, 0.5, -0.003}, t.positions[5] = {0.5, -0.5, -0.003};
+  t.positions[4] = {0, 0.5, -0.003};
+  t.positions[5] = {0.5, -0.5, -0.003};
   for (Vec3& p : t.positions) p = turn * p;
-  t.surface.triangles.push_back({6, 7, 8}), t.rest.insert(t.rest.end(), {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}});
+  t.surface.triangles.push_back({6, 7, 8});
+  t.rest.insert(t.rest.end(), {{5, 5, 5}, {6, 5, 5}, {5, 6, 5}});
   t.positions.insert(t.positions.end(), t.rest.end() - 3, t.rest.end());
-  t.fresh = {1, 1, 1}, t.marked = {1, 0, 0};
+  t.fresh = {1, 1, 1};
+  t.marked = {1, 0, 0};
   CHECK(t.untangle(0.001, turn).empty());
   const Vec3 up = turn * Vec3(0, 0, 1);
   for (std::size_t i = 0; i < 3; ++i)

@@ -22,8 +22,10 @@ struct Soup {
   std::vector<Vec3> from, to;
   void add(const TriangleMesh& m, const Vec3& at, double size) {
     const auto base = static_cast<std::uint32_t>(from.size());
-    for (const Vec3& p : m.vertices)
-      representative.push_back(static_cast<std::uint32_t>(from.size())), from.push_back(at + size * p);
+    for (const Vec3& p : m.vertices) {
+      representative.push_back(static_cast<std::uint32_t>(from.size()));
+      from.push_back(at + size * p);
+    }
     for (const auto& [a, b, c] : m.triangles) triangles.push_back({a + base, b + base, c + base});
   }
   std::vector<Vec3> move(BoundedMotionStats* report = nullptr) const {
@@ -42,7 +44,8 @@ struct Sheets : Soup {
   double depth, slide;
   explicit Sheets(Random& random) {
     const double waves = 0.1 * random.uniform();
-    depth = 0.2 * edge * random.uniform(), slide = 0.3 * edge * random.uniform();
+    depth = 0.2 * edge * random.uniform();
+    slide = 0.3 * edge * random.uniform();
     const auto height = [&](double x, double y) { return waves * edge * std::sin(5 * x) * std::cos(4 * y); };
     const auto off = [&](std::uint32_t k) { return k == 0 || k == n ? 0.0 : 0.2 * edge * (random.uniform() - 0.5); };
     triangles = triangles_of_two_sheets(n);
@@ -174,8 +177,12 @@ TEST_CASE("pairs at rest do not count against the bound of a motion") {
     }
   for (std::uint32_t k = 0; k < n; ++k) {
     const std::uint32_t next = (k + 1) % n;
-    s.triangles.push_back({k, next, n + next}), s.triangles.push_back({k, n + next, n + k});
-    if (k > 0 && next > 0) s.triangles.push_back({0, next, k}), s.triangles.push_back({n, n + k, n + next});
+    s.triangles.push_back({k, next, n + next});
+    s.triangles.push_back({k, n + next, n + k});
+    if (k > 0 && next > 0) {
+      s.triangles.push_back({0, next, k});
+      s.triangles.push_back({n, n + k, n + next});
+    }
   }
   s.representative = all_apart(s.from.size());
   BroadPhase near;
@@ -258,7 +265,8 @@ TEST_CASE("nothing leaves a shell at any speed, nor passes a triangle in its own
     }
     // Two coplanar triangles side by side: the targets of one are inside the other.
     Soup s;
-    s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.representative = {0, 1, 2, 3, 4, 5};
+    s.triangles = {{0, 1, 2}, {3, 4, 5}};
+    s.representative = {0, 1, 2, 3, 4, 5};
     s.from = {{-5, -5, 0}, {5, -5, 0}, {0, 5, 0}, {6, 0, 0}, {7, 0, 0}, {6, 1, 0}};
     s.to = s.from;
     for (std::size_t v = 3; v < 6; ++v) s.to[v].x() -= speed;
@@ -275,7 +283,8 @@ TEST_CASE("triangles that a fixed axis separates at both ends do not meet in bet
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     Soup s;
-    s.triangles = {{0, 1, 2}, {3, 4, 5}}, s.representative = {0, 1, 2, 3, 4, 5};
+    s.triangles = {{0, 1, 2}, {3, 4, 5}};
+    s.representative = {0, 1, 2, 3, 4, 5};
     for (int v = 0; v < 6; ++v)
       s.from.push_back(Vec3(v < 3 ? 0 : 1, 0, 0) + random.uniform(0, 0.5) * random.direction());
     const Vec3 closer = Vec3(0.4, 0, 0) + random.uniform(0, 0.5) * random.direction();

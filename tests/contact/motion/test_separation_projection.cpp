@@ -77,7 +77,10 @@ TEST_CASE("rigid pairs keep their shape") {
   const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
   Random random(1);
   std::vector<Vec3> start, next;
-  for (int v = 0; v < 6; ++v) start.push_back(random.direction()), next.push_back(random.direction());
+  for (int v = 0; v < 6; ++v) {
+    start.push_back(random.direction());
+    next.push_back(random.direction());
+  }
   SeparationProjection projection(triangles, start, 1e-3);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs{{0, 1}};
   projection.add(pairs, next);

@@ -50,7 +50,8 @@ TEST_CASE("vertices advance to free targets, ignore negligible errors, and stop 
     REQUIRE(pressed.crossings() == 0);
     double before = 0, after = 0;
     for (std::size_t v = 0; v < wanted.size(); ++v) {
-      before += (start[v] - wanted[v]).norm(), after += (pressed.at[v] - wanted[v]).norm();
+      before += (start[v] - wanted[v]).norm();
+      after += (pressed.at[v] - wanted[v]).norm();
       CHECK((pressed.at[v] - wanted[v]).norm() <= (start[v] - wanted[v]).norm() + 0.1 * edge);
     }
     CHECK(after < before);

@@ -18,7 +18,10 @@ struct Nodes {
   std::vector<Vec3> position, displacement;
   std::vector<double> clearance, mass;
   void add(const Vec3& x, double gap = 0) {
-    position.push_back(x), displacement.push_back(Vec3::Zero()), clearance.push_back(gap), mass.push_back(2);
+    position.push_back(x);
+    displacement.push_back(Vec3::Zero());
+    clearance.push_back(gap);
+    mass.push_back(2);
   }
   BladeNodes view() const {
     return {position, displacement, clearance, [&](std::size_t i) { return clearance[i]; },

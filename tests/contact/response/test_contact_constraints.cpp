@@ -29,7 +29,10 @@ struct Block {
 SurfacePoint random_point(Random& random, std::uint32_t vertices) {
   SurfacePoint p{{}, {}, 3};
   const double u = random.uniform(), v = random.uniform(0, 1 - u);
-  for (int c = 0; c < 3; ++c) p.vertex[c] = random.below(vertices), p.weight[c] = c == 0 ? u : c == 1 ? v : 1 - u - v;
+  for (int c = 0; c < 3; ++c) {
+    p.vertex[c] = random.below(vertices);
+    p.weight[c] = c == 0 ? u : c == 1 ? v : 1 - u - v;
+  }
   return p;
 }
 
@@ -41,8 +44,10 @@ TEST_CASE("a relative stencil is the difference of the interpolated displacement
   Random random(1);
   std::vector<double> inverse_mass;
   std::vector<Vec3> u;
-  for (std::size_t i = 0; i < block.solid.size(); ++i)
-    inverse_mass.push_back(i % 5 == 0 ? 0 : 1 / block.solid.mass(NodeId(i))), u.push_back(random.direction());
+  for (std::size_t i = 0; i < block.solid.size(); ++i) {
+    inverse_mass.push_back(i % 5 == 0 ? 0 : 1 / block.solid.mass(NodeId(i)));
+    u.push_back(random.direction());
+  }
   const auto alone = CoincidentVertices::all_distinct(n);
   RelativeStencilBuilder builder(block.weights, alone, inverse_mass);
   const auto at = [&](const SurfacePoint& p) {
@@ -56,8 +61,11 @@ TEST_CASE("a relative stencil is the difference of the interpolated displacement
     CHECK((weighted_sum(stencil.entries, u) - (at(a) - at(b))).norm() < 1e-12);
     double sum = 0, inverse = 0;
     std::map<std::uint32_t, int> times;
-    for (const auto& e : stencil.entries)
-      sum += e.weight, inverse += e.weight * e.weight * inverse_mass[e.node], ++times[e.node];
+    for (const auto& e : stencil.entries) {
+      sum += e.weight;
+      inverse += e.weight * e.weight * inverse_mass[e.node];
+      ++times[e.node];
+    }
     CHECK(std::abs(sum) < 1e-12);  // a common translation is no relative motion
     CHECK(stencil.inverse_mass == Approx(inverse).epsilon(1e-12));
     for (const auto& [node, count] : times) CHECK(count == 1);
@@ -111,9 +119,13 @@ TEST_CASE("points that neighbouring triangles share are constrained once, whatev
   const SurfaceMotion motion{triangles, representative, from, to, 0.01, 0.02};
   const auto candidate = [&](std::uint32_t t) {
     ContactCandidate c;
-    c.a = {{4, 5, 6}, 3}, c.b = {{triangles[t][0], triangles[t][1], triangles[t][2]}, 3};
-    c.normal = Vec3::UnitZ(), c.gap = 0.01;
-    c.closest.weights_a = {1, 0, 0}, c.closest.weights_b = {0.5, 0.5, 0}, c.closest.difference = {0, 0, 0.1};
+    c.a = {{4, 5, 6}, 3};
+    c.b = {{triangles[t][0], triangles[t][1], triangles[t][2]}, 3};
+    c.normal = Vec3::UnitZ();
+    c.gap = 0.01;
+    c.closest.weights_a = {1, 0, 0};
+    c.closest.weights_b = {0.5, 0.5, 0};
+    c.closest.difference = {0, 0, 0.1};
     return c;
   };
   const double dt = 0.5;

@@ -53,7 +53,10 @@ TEST_CASE("impulses conserve momentum, stop approaching points, and do not add e
   for (std::size_t v = 0; v < block.weights.size(); ++v) {
     double sum = 0;
     Vec3 x = Vec3::Zero();
-    for (const auto& e : block.weights.stencil(v)) sum += e.weight, x += e.weight * block.body.nodes.position[e.node];
+    for (const auto& e : block.weights.stencil(v)) {
+      sum += e.weight;
+      x += e.weight * block.body.nodes.position[e.node];
+    }
     CHECK(sum == Approx(1).epsilon(1e-12));
     CHECK((x - block.body.surface.point(block.body.surface.site(SurfaceVertexId(v)))).norm() < 1e-12);
   }
@@ -66,8 +69,12 @@ TEST_CASE("impulses conserve momentum, stop approaching points, and do not add e
     for (std::uint32_t k = 0; k < 1 + random.below(30); ++k) {
       ContactConstraint t{{{}, {}, 3}, {{}, {}, 1}, random.direction(), 0};
       const double p = random.uniform(), q = random.uniform(0, 1 - p);
-      for (int c = 0; c < 3; ++c) t.a.vertex[c] = random.below(n), t.a.weight[c] = c == 0 ? p : c == 1 ? q : 1 - p - q;
-      t.b.vertex[0] = random.below(n), t.b.weight[0] = 1;
+      for (int c = 0; c < 3; ++c) {
+        t.a.vertex[c] = random.below(n);
+        t.a.weight[c] = c == 0 ? p : c == 1 ? q : 1 - p - q;
+      }
+      t.b.vertex[0] = random.below(n);
+      t.b.weight[0] = 1;
       touching.push_back(t);
     }
     std::vector<Vec3> velocity;
@@ -75,7 +82,8 @@ TEST_CASE("impulses conserve momentum, stop approaching points, and do not add e
     const std::vector<Vec3> before = velocity;
     ImpulseOptions options;
     options.friction = seed % 2 ? random.uniform(0, 1) : 0;
-    options.sweeps = 200, options.tolerance = 1e-5;
+    options.sweeps = 200;
+    options.tolerance = 1e-5;
     options.softness = 0;
     apply_impulses(block.weights, touching, block.alone, block.inverse_mass, options, velocity);
     CHECK((momentum(block.solid, velocity) - momentum(block.solid, before)).norm() <
@@ -107,7 +115,10 @@ TEST_CASE("friction stops slow slip and slows fast slip") {
     for (std::size_t i = 0; i < block.solid.size(); ++i)
       velocity.push_back(block.body.nodes.position[i].x() * Vec3(-1, slide, 0));
     ImpulseOptions options;
-    options.friction = 0.5, options.softness = 0, options.sweeps = 200, options.tolerance = 1e-5;
+    options.friction = 0.5;
+    options.softness = 0;
+    options.sweeps = 200;
+    options.tolerance = 1e-5;
     apply_impulses(block.weights, std::span(&t, 1), block.alone, block.inverse_mass, options, velocity);
     const Vec3 left = block.weights.interpolate(b, velocity) - block.weights.interpolate(a, velocity);
     CHECK(std::abs(left.x()) < 1e-6);

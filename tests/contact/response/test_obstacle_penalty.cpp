@@ -15,7 +15,8 @@ namespace {
 
 Eigen::Isometry3d at(const Vec3& place, const Vec3& axis = Vec3::UnitZ(), double angle = 0) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(), pose.translation() = place;
+  pose.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+  pose.translation() = place;
   return pose;
 }
 
@@ -51,7 +52,10 @@ TEST_CASE("an obstacle's force is minus its energy's derivative, and its Hessian
     AssembledPotential assembled(o, begun);
     for (int i = 0; i < 40; ++i) {
       std::vector<Vec3> way;
-      for (std::size_t k = 0; k < n; ++k) u[k] = 0.01 * random.direction(), way.push_back(random.direction());
+      for (std::size_t k = 0; k < n; ++k) {
+        u[k] = 0.01 * random.direction();
+        way.push_back(random.direction());
+      }
       const double h = 1e-7;
       const std::vector<Vec3> behind = assembled.force(moved(u, h, way)), before = assembled.force(moved(u, -h, way)),
                               force = assembled.force(u), turned = assembled.product(way);
@@ -78,8 +82,10 @@ TEST_CASE("an obstacle's reaction is opposite to force and torque on the body") 
   o.begin_substep(u, 0, 1);
   const std::vector<Vec3> force = AssembledPotential(o, u).force(u);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
-  for (std::size_t i = 0; i < n; ++i)
-    sum += force[i], torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    sum += force[i];
+    torque += (block.body.nodes.position[i] - (place + Vec3(0.02, 0.01, 0.01))).cross(force[i]);
+  }
   const auto reaction = o.reaction(u);
   REQUIRE(sum.norm() > 1);
   CHECK((reaction.force + sum).norm() < 1e-12 * sum.norm());
@@ -129,8 +135,10 @@ TEST_CASE("contacts within their activation distance are zero: energy and force 
           CHECK(assembled.energy(x) == Approx(wanted).epsilon(1e-12).margin(1e-300));
           const auto force = assembled.force(x), expected = force_of(*p, x);
           double size = 1e-12, wrong = 0;
-          for (std::size_t i = 0; i < n; ++i)
-            size = std::max(size, expected[i].norm()), wrong = std::max(wrong, (force[i] - expected[i]).norm());
+          for (std::size_t i = 0; i < n; ++i) {
+            size = std::max(size, expected[i].norm());
+            wrong = std::max(wrong, (force[i] - expected[i]).norm());
+          }
           CHECK(wrong < 1e-11 * size);
           acted += wanted > 0;
           for (std::size_t r = 0; r < p->size(); ++r) skipped += p->activation_distance(r) > far;

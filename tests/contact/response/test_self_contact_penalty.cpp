@@ -26,7 +26,8 @@ RelativeStencil row_of(const std::vector<std::uint32_t>& nodes, Random& random) 
   double left = 0;
   for (const auto node : nodes) {
     const double w = row.entries.size() + 1 < nodes.size() ? random.uniform(-0.5, 0.5) : -left;
-    row.entries.push_back({node, w}), left += w;
+    row.entries.push_back({node, w});
+    left += w;
   }
   return row;
 }
@@ -85,8 +86,10 @@ TEST_CASE(
     Random random(seed);
     constexpr std::uint32_t n = 24;
     std::vector<Vec3> u, at;
-    for (std::uint32_t i = 0; i < n; ++i)
-      u.push_back(random.direction()), at.push_back(u.back() + 0.3 * random.direction());
+    for (std::uint32_t i = 0; i < n; ++i) {
+      u.push_back(random.direction());
+      at.push_back(u.back() + 0.3 * random.direction());
+    }
     SelfContactPenalty touch({0.4, 0.05});
     for (int r = 0; r < 7; ++r) {
       std::vector<std::uint32_t> some;
@@ -109,7 +112,8 @@ TEST_CASE(
     CHECK(std::accumulate(energy.begin(), energy.end(), 0.0) == Approx(assembled.energy(at)).epsilon(1e-12));
     for (std::uint32_t i = 0; i < n; ++i) {
       std::vector<Vec3> unit(n, Vec3::Zero()), x = at;
-      unit[i] = random.direction(), x[i] += 0.2 * unit[i];
+      unit[i] = random.direction();
+      x[i] += 0.2 * unit[i];
       const std::vector<Vec3> column = assembled.product(unit);
       moved.assign(n, 0);
       assembled.sum().add_energy(x, part, all, moved);
@@ -153,8 +157,9 @@ TEST_CASE(
            i += 1 + static_cast<std::uint32_t>(random.below(9)))
         row.push_back({i, random.uniform(-1, 1)});
       const Vec3 d = random.direction();
-      springs.nodes.push_back(row), springs.stiffness.push_back(random.uniform(1, 3) * d * d.transpose()),
-          springs.on.push_back(0);
+      springs.nodes.push_back(row);
+      springs.stiffness.push_back(random.uniform(1, 3) * d * d.transpose());
+      springs.on.push_back(0);
     }
     const std::vector<Vec3> begun(n, Vec3::Zero());
     AssembledPotential assembled(springs, begun);
@@ -163,15 +168,20 @@ TEST_CASE(
       for (auto& on : springs.on)
         if (random.uniform() < some) on = !on;
       std::vector<Vec3> u, p, force(n, Vec3::Zero()), product = force;
-      for (std::size_t i = 0; i < n; ++i) u.push_back(random.direction()), p.push_back(random.direction());
+      for (std::size_t i = 0; i < n; ++i) {
+        u.push_back(random.direction());
+        p.push_back(random.direction());
+      }
       double energy = 0;
       for (std::size_t r = 0; r < total; ++r) {
         if (!springs.on[r]) continue;
         const Vec3 way = weighted_sum(springs.nodes[r], u),
                    pull = springs.stiffness[r] * weighted_sum(springs.nodes[r], p);
         energy += springs.energy(r, way);
-        for (const auto& e : springs.nodes[r])
-          force[e.node] -= e.weight * springs.stiffness[r] * way, product[e.node] += e.weight * pull;
+        for (const auto& e : springs.nodes[r]) {
+          force[e.node] -= e.weight * springs.stiffness[r] * way;
+          product[e.node] += e.weight * pull;
+        }
       }
       CHECK(assembled.energy(u) == Approx(energy).epsilon(1e-12).margin(1e-300));
       const auto pushed = assembled.force(u), multiplied = assembled.product(p);
@@ -206,7 +216,8 @@ TEST_CASE("triangles that the plane of one separates at both ends do not meet in
     }
     const bool part = planes.separates(0, 1, 1e-12, 1e-12);
     if (meets) CHECK_FALSE(part);
-    met += meets, parted += part;
+    met += meets;
+    parted += part;
     CHECK(planes.separates(0, 1, 1e-12, 1e-12) == planes.separates(1, 0, 1e-12, 1e-12));
   }
   CHECK(met > 20);
@@ -219,7 +230,8 @@ TEST_CASE("the upper half of a cut block presses on the lower one and does not s
   sampling.spacing = 0.25;
   Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling), {26, NeighborMethod::automatic});
   Material material;
-  material.young = 1e5, material.damping = 2;
+  material.young = 1e5;
+  material.damping = 2;
   Solid solid(body.nodes, body.graph, material);
   State state{std::vector<Vec3>(solid.size(), Vec3::Zero()), std::vector<Vec3>(solid.size(), Vec3::Zero())};
   SelfContact contact(body, solid);

@@ -20,21 +20,26 @@ struct ClosedSheet {
     std::vector<std::uint32_t> copy;
     for (std::uint32_t i = 0; i <= n; ++i)
       for (std::uint32_t j = 0; j <= n; ++j) {
-        positions.push_back(Vec3(i, j, 0)), surface.site.push_back(at(i, j)), copy.push_back(at(i, j));
+        positions.push_back(Vec3(i, j, 0));
+        surface.site.push_back(at(i, j));
+        copy.push_back(at(i, j));
       }
     for (std::uint32_t i = 1; i < n; ++i)
       for (std::uint32_t j = 1; j < n; ++j) {
         copy[at(i, j)] = static_cast<std::uint32_t>(positions.size());
         upper.push_back(copy[at(i, j)]);
-        positions.push_back(Vec3(i, j, 0)), surface.site.push_back(at(i, j));
+        positions.push_back(Vec3(i, j, 0));
+        surface.site.push_back(at(i, j));
       }
     std::uint32_t face = 0;
     for (std::uint32_t i = 0; i < n; ++i)
       for (std::uint32_t j = 0; j < n; ++j)
         for (const Triangle& t :
              {Triangle{at(i, j), at(i + 1, j), at(i, j + 1)}, Triangle{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}}) {
-          surface.triangles.push_back(t), surface.side.push_back(2 * face);
-          surface.triangles.push_back({copy[t[0]], copy[t[2]], copy[t[1]]}), surface.side.push_back(2 * face + 1);
+          surface.triangles.push_back(t);
+          surface.side.push_back(2 * face);
+          surface.triangles.push_back({copy[t[0]], copy[t[2]], copy[t[1]]});
+          surface.side.push_back(2 * face + 1);
           ++face;
         }
     surface.edge = 1;

@@ -15,7 +15,8 @@ TEST_CASE("after each step of a cut the weights are those of a surface looked at
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     SampleOptions sampling;
-    sampling.spacing = 0.12, sampling.seed = seed;
+    sampling.spacing = 0.12;
+    sampling.seed = seed;
     Body body = build_body(Complex::from_skin(make_block({1, 1, 1}, 0.2)),
                            sample_nodes(make_block({1, 1, 1}, 0.2), sampling), {26, NeighborMethod::automatic});
     body.resample_limit = random.below(2) == 0 ? 0 : body.resample_limit;

@@ -39,7 +39,11 @@ void grow_cracks(Complex& surface, Random& random, int cracks, int steps, double
     for (int k = 1; k <= steps; ++k) {
       const FrontState before = front;
       CrackDelta delta = advance(surface, front, blade_at(a, b, step, k, 5));
-      if (!delta.empty() && random.below(4) == 0) surface.undo(), front = before, delta = {};
+      if (!delta.empty() && random.below(4) == 0) {
+        surface.undo();
+        front = before;
+        delta = {};
+      }
       visit(front, delta);
     }
   }

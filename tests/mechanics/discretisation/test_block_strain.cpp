@@ -18,7 +18,9 @@ namespace {
 
 Material steel() {
   Material m;
-  m.young = 2e11, m.density = 7800, m.damping = 0;
+  m.young = 2e11;
+  m.density = 7800;
+  m.damping = 0;
   return m;
 }
 
@@ -59,7 +61,8 @@ double largest_difference(const MaterialPoints& points, const BlockStrain& one, 
   PointMatrices<double> a, b;
   double largest = 0;
   for (std::size_t block = 0; block < points.blocks.size(); ++block) {
-    one.gradients(block, u, scratch, a), other.gradients(block, u, scratch, b);
+    one.gradients(block, u, scratch, a);
+    other.gradients(block, u, scratch, b);
     for (std::size_t i = 0; i < points.blocks[block].points.size(); ++i)
       largest = std::max(largest, (matrix(a, i) - matrix(b, i)).norm());
   }
@@ -124,8 +127,8 @@ TEST_CASE("forces in single precision are derivatives of the energies in single 
       block.evaluate(b, here, {}, nullptr, pull.data());
       for (std::size_t j = 0; j < points.blocks[b].nodes.size(); ++j) {
         const Vec3 own = Eigen::Map<const Vec3>(&pull[4 * j]);
-        work += own.dot(direction[points.blocks[b].nodes[j]]),
-            size += own.norm() * direction[points.blocks[b].nodes[j]].norm();
+        work += own.dot(direction[points.blocks[b].nodes[j]]);
+        size += own.norm() * direction[points.blocks[b].nodes[j]].norm();
       }
     }
     CHECK(std::abs((more - less) / (2 * step) - work) < 1e-5 * size);
@@ -147,7 +150,9 @@ TEST_CASE("blocks with several components, or with points of poor quality, stay 
   for (std::size_t block = 0; block < points.blocks.size(); ++block) {
     const auto& nodes = points.blocks[block].nodes;
     if (std::all_of(nodes.begin(), nodes.end(), [&](auto j) { return halves[j] == halves[nodes[0]]; })) continue;
-    exact.gradients(block, u, scratch, a), of_halves.gradients(block, u, scratch, b), ++mixed;
+    exact.gradients(block, u, scratch, a);
+    of_halves.gradients(block, u, scratch, b);
+    ++mixed;
     for (std::size_t i = 0; i < points.blocks[block].points.size(); ++i) CHECK(matrix(a, i) == matrix(b, i));
   }
   CHECK(mixed > 0);

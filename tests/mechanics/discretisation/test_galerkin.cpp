@@ -17,7 +17,8 @@ namespace {
 
 Material soft() {
   Material m;
-  m.young = 1e5, m.damping = 0;
+  m.young = 1e5;
+  m.damping = 0;
   return m;
 }
 
@@ -52,7 +53,10 @@ TEST_CASE("quadrature cells hold the body's volume and its first moments") {
   double volume = 0;
   Vec3 middle = Vec3::Zero();
   for (const auto& b : solid.discretisation().points.blocks)
-    for (const auto& p : b.points) volume += p.volume, middle += p.volume * p.position;
+    for (const auto& p : b.points) {
+      volume += p.volume;
+      middle += p.volume * p.position;
+    }
   CHECK(volume == Approx(signed_volume(mesh)).epsilon(1e-12));
   Vec3 exact = Vec3::Zero();
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -68,7 +72,15 @@ TEST_CASE("patch test: linear fields have constant strain at all points, with a 
   const Body body = cut_block(steps);
   Solid solid(body, soft());
   Mat3 linear;
-  linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
+  linear << 0.1;
+  0.02;
+  -0.03;
+  0.01;
+  -0.05;
+  0.04;
+  0.0;
+  0.06;
+  0.02;
   const auto u = field(body, [&](const Vec3& x) { return Vec3(linear * x + Vec3(7, 8, 9)); });
   double worst = 0;
   for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {
@@ -203,13 +215,17 @@ TEST_CASE("the implicit step's stiffness is the derivative of the forces") {
     // Under tension every point's stiffness is positive, so that projection changes none.
     auto u = field(body, [&](const Vec3& x) { return Vec3(0.08 * x + 0.002 * random.direction()); });
     std::vector<Vec3> p, plus = u, minus = u;
-    for (std::size_t i = 0; i < u.size(); ++i)
-      p.push_back(random.direction()), plus[i] += 1e-5 * p[i], minus[i] -= 1e-5 * p[i];
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      p.push_back(random.direction());
+      plus[i] += 1e-5 * p[i];
+      minus[i] -= 1e-5 * p[i];
+    }
     const auto forward = solid.forces(plus), backward = solid.forces(minus), product = solid.stiffness_product(u, p);
     double error = 0, size = 0;
     for (std::size_t i = 0; i < u.size(); ++i) {
       const Vec3 difference = (backward[i] - forward[i]) / 2e-5;
-      error += (product[i] - difference).squaredNorm(), size += difference.squaredNorm();
+      error += (product[i] - difference).squaredNorm();
+      size += difference.squaredNorm();
     }
     CHECK(std::sqrt(error / size) < 4e-5);  // 16-bit shape gradients
     // Forces are the negative derivative of the energy.
@@ -276,12 +292,17 @@ TEST_CASE("a crushed, an inverted and a torn block come back without NaN") {
 TEST_CASE("plastic strain remains after unloading, and stays with its points over a cut") {
   Body body = block_body({1, 0.6, 0.6}, 0.2);
   Material m = soft();
-  m.damping = 20, m.yield = 0.02, m.creep = 10, m.max_plastic = 0.3;
+  m.damping = 20;
+  m.yield = 0.02;
+  m.creep = 10;
+  m.max_plastic = 0.3;
   Solid solid(body, m);
   State state = at_rest(body);
   const auto stretch = [&](double by) {
-    for (std::size_t i = 0; i < state.displacement.size(); ++i)
-      state.displacement[i] = Vec3(by * body.nodes.position[i].x(), 0, 0), state.velocity[i].setZero();
+    for (std::size_t i = 0; i < state.displacement.size(); ++i) {
+      state.displacement[i] = Vec3(by * body.nodes.position[i].x(), 0, 0);
+      state.velocity[i].setZero();
+    }
   };
   Environment still;
   still.gravity.setZero();

@@ -18,7 +18,8 @@ namespace {
 
 Material soft() {
   Material m;
-  m.young = 1e5, m.damping = 0;
+  m.young = 1e5;
+  m.damping = 0;
   return m;
 }
 
@@ -57,7 +58,15 @@ TEST_CASE("near held boxes, affine fields keep their gradient", "[held]") {
   solid.hold(body, both_ends(2, 0.4, 1.7));
   REQUIRE_FALSE(solid.discretisation().points.blocks == plain);
   Mat3 linear;
-  linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
+  linear << 0.1;
+  0.02;
+  -0.03;
+  0.01;
+  -0.05;
+  0.04;
+  0.0;
+  0.06;
+  0.02;
   std::vector<Vec3> u;
   for (const Vec3& x : body.nodes.position) u.push_back(linear * x + Vec3(7, 8, 9));
   double worst = 0;
@@ -83,8 +92,14 @@ TEST_CASE("material in held boxes follows their nodes, whatever the nodes outsid
   int inside = 0;
   double worst = 0;
   each_gradient(solid, u, [&](const Vec3& x, const Mat3& g) {
-    if (holds(boxes[0], x)) ++inside, worst = std::max(worst, g.norm());
-    if (holds(boxes[1], x)) ++inside, worst = std::max(worst, (g - turn + Mat3::Identity()).norm());
+    if (holds(boxes[0], x)) {
+      ++inside;
+      worst = std::max(worst, g.norm());
+    }
+    if (holds(boxes[1], x)) {
+      ++inside;
+      worst = std::max(worst, (g - turn + Mat3::Identity()).norm());
+    }
   });
   CHECK(inside > 100);
   CHECK(worst < 1e-10);
@@ -92,7 +107,10 @@ TEST_CASE("material in held boxes follows their nodes, whatever the nodes outsid
   const auto p = random_field(u.size(), 1, random);
   std::vector<Vec3> up = u, down = u;
   const double h = 1e-6;
-  for (std::size_t i = 0; i < u.size(); ++i) up[i] += h * p[i], down[i] -= h * p[i];
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    up[i] += h * p[i];
+    down[i] -= h * p[i];
+  }
   const auto f = solid.forces(u);
   double work = 0;
   for (std::size_t i = 0; i < u.size(); ++i) work += f[i].dot(p[i]);

@@ -22,10 +22,12 @@ PointBlock random_block(Random& random, std::size_t points, std::uint32_t nodes)
   std::vector<ShapeGradients> shapes(points);
   for (std::size_t i = 0; i < points; ++i) {
     all[i].position = Vec3(random.uniform(), random.uniform(), random.uniform());
-    all[i].volume = random.uniform(0.5, 1), all[i].quality = MomentQuality::good;
+    all[i].volume = random.uniform(0.5, 1);
+    all[i].quality = MomentQuality::good;
     Vec3 sum = Vec3::Zero();
     for (std::uint32_t j = random.below(4); j < nodes && i % 7 != 5; j += 1 + random.below(4)) {
-      shapes[i].nodes.push_back(j), shapes[i].gradient.push_back(3 * random.uniform() * random.direction());
+      shapes[i].nodes.push_back(j);
+      shapes[i].gradient.push_back(3 * random.uniform() * random.direction());
       sum += shapes[i].gradient.back();
     }
     if (!shapes[i].nodes.empty()) shapes[i].gradient.back() -= sum;  // constants have no gradient
@@ -114,7 +116,15 @@ TEST_CASE("gradients and divergence of a block are a dense matrix and its transp
       quantised_divergence(block, matrices_of(s), single.data());
       CHECK((unpadded(single) - b.transpose() * s).cwiseAbs().maxCoeff() < double(3 * points) * 1e-4 * size);
       // A constant field has no gradient but the affine one, which points without nodes do not get.
-      affine << 1, 2, 3, 4, 5, 6, 7, 8, 9;
+      affine << 1;
+      2;
+      3;
+      4;
+      5;
+      6;
+      7;
+      8;
+      9;
       const Eigen::VectorXd ones = Eigen::VectorXd::Ones(u.size());
       quantised_gradients(block, padded_field<float>(ones).data(), affine, gradient);
       const Eigen::VectorXd constant = unpadded(gradient, points);
@@ -135,7 +145,8 @@ TEST_CASE("stiffness products of a block are those of the dense matrix Bᵀ D B"
     if (block.nodes.empty()) continue;
     const std::size_t points = block.points.size(), padded = block.quantum.size();
     Material m;
-    m.young = 2, m.volume_term = 0.5;
+    m.young = 2;
+    m.volume_term = 0.5;
     if (random.below(2)) m.model = ElasticModel::saint_venant_kirchhoff;
     PointMatrices<float> gradient;
     gradient.resize(points);
@@ -207,9 +218,11 @@ TEST_CASE("a block made of points of other blocks equals the one made of their s
       const PointBlock& block = blocks[random.below(2)];
       const bool quad = random.below(2);
       const std::size_t from = quad ? 4 * random.below(4) : random.below(16), size = quad ? 4 : 1;
-      for (std::size_t i = from; i < from + size; ++i)
-        sources.push_back({&block, i, nullptr}), points.push_back(block.points[i]),
-            shapes.push_back(block.shape_gradients(i));
+      for (std::size_t i = from; i < from + size; ++i) {
+        sources.push_back({&block, i, nullptr});
+        points.push_back(block.points[i]);
+        shapes.push_back(block.shape_gradients(i));
+      }
     }
     CHECK(PointBlock(points, sources) == PointBlock(points, shapes));
   }

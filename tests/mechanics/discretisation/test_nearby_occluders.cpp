@@ -54,10 +54,12 @@ TEST_CASE("kept occluders block in their boxes what all faces block, through cut
           std::vector<Vec3> ends(1 + random.below(40));
           for (Vec3& q : ends) q = point_in(box, random);
           std::vector<std::uint8_t> result(ends.size(), 2), expected = result;
-          near.faces.blocks(p, ends, result.data()), all.blocks(p, ends, expected.data());
+          near.faces.blocks(p, ends, result.data());
+          all.blocks(p, ends, expected.data());
           CHECK(result == expected);
           const auto hidden = static_cast<std::size_t>(std::count(expected.begin(), expected.end(), 1));
-          blocked += hidden, free += ends.size() - hidden;
+          blocked += hidden;
+          free += ends.size() - hidden;
         }
         std::vector<FaceId> in_box = alive;
         std::erase_if(in_box, [&](FaceId f) { return !surface.box(f).meets(box); });

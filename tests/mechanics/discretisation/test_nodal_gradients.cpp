@@ -35,7 +35,15 @@ TEST_CASE("gradients at nodes are exact for linear fields, and all ways to compu
   const NodalGradientOperator gradients = operator_of(body);
   REQUIRE(gradients.size() == body.nodes.size());
   Mat3 linear;
-  linear << 0.1, 0.2, 0, -0.3, 0.1, 0.4, 0.2, 0, 0.5;
+  linear << 0.1;
+  0.2;
+  0;
+  -0.3;
+  0.1;
+  0.4;
+  0.2;
+  0;
+  0.5;
   std::vector<Vec3> u;
   for (const Vec3& x : body.nodes.position) u.push_back(linear * x + Vec3(5, 6, 7));
   Random random(1);
@@ -116,7 +124,11 @@ TEST_CASE("the mode penalty vanishes for affine fields, and its derivative match
   // A quadratic form: central differences are exact.
   std::vector<Vec3> plus = u, minus = u;
   double slope = 0;
-  for (std::size_t i = 0; i < n; ++i) plus[i] += v[i], minus[i] -= v[i], slope += derivative[i].dot(v[i]);
+  for (std::size_t i = 0; i < n; ++i) {
+    plus[i] += v[i];
+    minus[i] -= v[i];
+    slope += derivative[i].dot(v[i]);
+  }
   CHECK(0.5 * (penalty.add(gradients, plus, nullptr) - penalty.add(gradients, minus, nullptr)) ==
         Approx(slope).epsilon(1e-10).margin(1e-10));
   std::vector<double> diagonal(n, 0);

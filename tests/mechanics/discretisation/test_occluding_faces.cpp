@@ -41,11 +41,14 @@ TEST_CASE("kept faces block what a tree over them blocks, through cuts and steps
         for (Vec3& q : ends) q = p + random.uniform(0.01, 0.5) * random.direction();
         std::vector<std::uint8_t> result(ends.size(), 2), at_least = result, at_most = result;
         faces.blocks(p, ends, result.data());
-        least.blocks(p, ends, at_least.data()), most.blocks(p, ends, at_most.data());
+        least.blocks(p, ends, at_least.data());
+        most.blocks(p, ends, at_most.data());
         for (std::size_t e = 0; e < ends.size(); ++e) {
           CHECK(at_least[e] <= result[e]);
           CHECK(result[e] <= at_most[e]);
-          blocked += result[e] == 1, free += result[e] == 0, kept += result[e] != at_least[e];
+          blocked += result[e] == 1;
+          free += result[e] == 0;
+          kept += result[e] != at_least[e];
         }
       }
     });

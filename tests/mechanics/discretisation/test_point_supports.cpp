@@ -20,8 +20,10 @@ std::vector<Supported> supports(const Body& body, const std::vector<Vec3>& posit
                                 const Occluders* occluders = nullptr, std::span<const std::uint32_t> component = {}) {
   std::vector<Supported> all(positions.size());
   std::vector<SupportTask> tasks;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    all[i].point.position = positions[i], tasks.push_back({&all[i].point, &all[i].shape});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].point.position = positions[i];
+    tasks.push_back({&all[i].point, &all[i].shape});
+  }
   compute_supports(body, tasks, occluders, nullptr, component);
   return all;
 }
@@ -46,8 +48,10 @@ TEST_CASE("without cracks a point's nodes are those whose support holds it", "[s
     std::vector<std::uint32_t> expected;
     double farthest = 0;
     for (std::uint32_t j = 0; j < body.nodes.size(); ++j)
-      if (const double d = (body.nodes.position[j] - positions[i]).norm(); d < factor * body.nodes.radius[j])
-        expected.push_back(j), farthest = std::max(farthest, d);
+      if (const double d = (body.nodes.position[j] - positions[i]).norm(); d < factor * body.nodes.radius[j]) {
+        expected.push_back(j);
+        farthest = std::max(farthest, d);
+      }
     CHECK(near[i].shape.nodes == expected);
     CHECK(near[i].point.influence_radius >= farthest);
     CHECK(near[i].point.quality == MomentQuality::good);
@@ -132,7 +136,10 @@ TEST_CASE("components of the graph, and faces nearby alone, leave the supports o
     const auto expected = supports(body, positions, &everything), found = supports(body, positions, nullptr, component);
     std::vector<MaterialPoint> points;
     std::vector<ShapeGradients> shapes;
-    for (const Supported& e : expected) points.push_back(e.point), shapes.push_back(e.shape);
+    for (const Supported& e : expected) {
+      points.push_back(e.point);
+      shapes.push_back(e.shape);
+    }
     const PointBlock block(points, shapes);
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const auto &e = expected[i], &f = found[i];

@@ -61,7 +61,10 @@ TEST_CASE("an update after finer nodes gives the cells of a build from scratch",
   // Nodes in one corner become finer; the first one, which decides the lattice, stays.
   std::size_t finer = 0;
   for (std::size_t i = 1; i < body.nodes.size(); ++i)
-    if (body.nodes.position[i].x() > 0.6) body.nodes.spacing[i] /= 2, ++finer;
+    if (body.nodes.position[i].x() > 0.6) {
+      body.nodes.spacing[i] /= 2;
+      ++finer;
+    }
   REQUIRE(finer > 0);
   const std::size_t before = cells.cells().size();
   CHECK(cells.update(body));
@@ -77,7 +80,8 @@ TEST_CASE("an update after finer nodes gives the cells of a build from scratch",
 
 TEST_CASE("whole cells beside finer ones appear twice, with an even lattice of eight points", "[quadrature]") {
   SampleOptions options;
-  options.spacing = 0.08, options.levels = 2;
+  options.spacing = 0.08;
+  options.levels = 2;
   const TriangleMesh mesh = make_block({1, 1, 1}, 0.2);
   const QuadratureCells all(build_body(Complex::from_skin(mesh), sample_nodes(mesh, options)));
   const auto& cells = all.cells();

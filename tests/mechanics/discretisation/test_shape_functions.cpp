@@ -65,12 +65,21 @@ TEST_CASE("Eq. 1 reproduces an affine motion, and falls back on the first node's
   Random random(2);
   NodeSet set;
   Mat3 gradient;
-  gradient << 0.1, 0.2, 0, -0.3, 0.1, 0.4, 0.2, 0, 0.5;
+  gradient << 0.1;
+  0.2;
+  0;
+  -0.3;
+  0.1;
+  0.4;
+  0.2;
+  0;
+  0.5;
   const Vec3 shift(1, 2, 3), x(0.1, -0.05, 0.2);
   std::vector<std::pair<NodeId, double>> nodes;
   std::vector<Vec3> u;
   for (std::uint32_t i = 0; i < 6; ++i) {
-    set.position.push_back(0.3 * random.direction()), set.radius.push_back(1);
+    set.position.push_back(0.3 * random.direction());
+    set.radius.push_back(1);
     u.push_back(gradient * set.position[i] + shift);
     nodes.push_back({NodeId(i), (x - set.position[i]).norm()});
   }
@@ -94,7 +103,10 @@ TEST_CASE("shape gradients reproduce linear fields and match differences of the 
     CHECK(condition > 1);
     Vec3 sum = Vec3::Zero();
     Mat3 linear = Mat3::Zero();
-    for (std::size_t j = 0; j < nodes.size(); ++j) sum += gradient[j], linear += nodes[j] * gradient[j].transpose();
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      sum += gradient[j];
+      linear += nodes[j] * gradient[j].transpose();
+    }
     CHECK(sum.norm() < 1e-12);
     CHECK((linear - Mat3::Identity()).norm() < 1e-10);
     const double h = 1e-6;

@@ -21,7 +21,10 @@ namespace {
 
 Material material(ElasticModel model) {
   Material m;
-  m.model = model, m.young = 10, m.poisson = 0.4, m.volume_term = 2;
+  m.model = model;
+  m.young = 10;
+  m.poisson = 0.4;
+  m.volume_term = 2;
   return m;
 }
 
@@ -128,7 +131,8 @@ TEST_CASE("materials refuse impossible parameters", "[elasticity]") {
 TEST_CASE("points in vector registers with plastic strain and viscosity follow the scalar formulas", "[elasticity]") {
   const auto model = GENERATE(ElasticModel::saint_venant_kirchhoff, ElasticModel::neo_hookean);
   Material m = material(model);
-  m.yield = 0.01, m.viscosity = 3;
+  m.yield = 0.01;
+  m.viscosity = 3;
   const double dt = 0.1;
   const auto [first, count] = seeds(20);
   for (std::uint64_t seed = first; seed < first + std::uint64_t(count); ++seed) {
@@ -136,13 +140,17 @@ TEST_CASE("points in vector registers with plastic strain and viscosity follow t
     Random random(seed);
     constexpr std::size_t points = 16;
     PointMatrices<double> start, inverse_stretch, previous;
-    start.resize(points), inverse_stretch.resize(points), previous.resize(points);
+    start.resize(points);
+    inverse_stretch.resize(points);
+    previous.resize(points);
     std::vector<double> volume(points), energy(points);
     for (std::size_t i = 0; i < points; ++i) {
       Mat3 plastic = random_matrix(random, 0.1);
       plastic = 0.5 * (plastic + plastic.transpose()).eval();
-      set(start, i, random_matrix(random, 0.3)), set(previous, i, random_matrix(random, 0.3));
-      set(inverse_stretch, i, inverse_plastic_stretch(plastic)), volume[i] = random.uniform(0.5, 1);
+      set(start, i, random_matrix(random, 0.3));
+      set(previous, i, random_matrix(random, 0.3));
+      set(inverse_stretch, i, inverse_plastic_stretch(plastic));
+      volume[i] = random.uniform(0.5, 1);
     }
     for_each_simd_target([&] {
       PointMatrices<double> stresses = start;

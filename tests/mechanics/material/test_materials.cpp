@@ -24,7 +24,8 @@ Body bars(double gap, std::span<const int> which, double spacing = 0.1) {
   TriangleMesh mesh;
   NodeSet nodes;
   SampleOptions options;
-  options.spacing = spacing, options.levels = 1;
+  options.spacing = spacing;
+  options.levels = 1;
   for (const int b : which) {
     const TriangleMesh own = bar(b, gap);
     const NodeSet of = sample_nodes(own, options);
@@ -55,17 +56,27 @@ std::vector<std::uint16_t> numbers(const Body& body) {
 
 Material soft() {
   Material m;
-  m.young = 2e4, m.density = 300, m.damping = 1;
+  m.young = 2e4;
+  m.density = 300;
+  m.damping = 1;
   return m;
 }
 
 // Different from soft() in every parameter that may differ.
 Material other(Discretisation discretisation) {
   Material m;
-  m.model = ElasticModel::saint_venant_kirchhoff, m.discretisation = discretisation;
-  m.young = 6e5, m.poisson = 0.1, m.density = 2000, m.volume_term = 1e5, m.damping = 4, m.viscosity = 300,
+  m.model = ElasticModel::saint_venant_kirchhoff;
+  m.discretisation = discretisation;
+  m.young = 6e5;
+  m.poisson = 0.1;
+  m.density = 2000;
+  m.volume_term = 1e5;
+  m.damping = 4;
+  m.viscosity = 300;
   m.mode_penalty = 0.2;
-  m.yield = 0.001, m.creep = 5, m.max_plastic = 0.3;
+  m.yield = 0.001;
+  m.creep = 5;
+  m.max_plastic = 0.3;
   return m;
 }
 
@@ -92,8 +103,11 @@ TEST_CASE(
     Random random(3);
     std::vector<Vec3> u(body.nodes.size()), p(u.size()),
         own[2] = {std::vector<Vec3>(u.size(), Vec3::Zero()), std::vector<Vec3>(u.size(), Vec3::Zero())};
-    for (std::size_t i = 0; i < u.size(); ++i)
-      u[i] = 0.02 * random.direction(), p[i] = random.direction(), own[is_second(body, i)][i] = u[i];
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      u[i] = 0.02 * random.direction();
+      p[i] = random.direction();
+      own[is_second(body, i)][i] = u[i];
+    }
     State strained{u, u}, flown = strained;
     for (std::size_t k = 0; k < mixed.point_count(); ++k) {
       const Vec3 by = 0.05 * random.direction();
@@ -159,7 +173,9 @@ TEST_CASE("a clamped body sags as it does without the other one") {
   const Body together = both(0.1), alone[2] = {bars(0.1, std::array{0}), bars(0.1, std::array{1})};
   for (const auto discretisation : {Discretisation::galerkin, Discretisation::mueller04}) {
     Material of[2] = {soft(), soft()};
-    of[0].damping = of[1].damping = 10, of[1].young = 1.2e5, of[1].density = 900;
+    of[0].damping = of[1].damping = 10;
+    of[1].young = 1.2e5;
+    of[1].density = 900;
     of[0].discretisation = of[1].discretisation = discretisation;
     const auto sag = [&](const Body& body, const Materials& materials) {
       Solid solid(body, materials);
@@ -207,7 +223,8 @@ TEST_CASE("after a cut, a solid of several materials equals one built from scrat
     const auto before = state;
     const Environment env = clamped(body);
     State again = before;
-    solid.step_implicit(state, 0.03, env), scratch.step_implicit(again, 0.03, env);
+    solid.step_implicit(state, 0.03, env);
+    scratch.step_implicit(again, 0.03, env);
     CHECK(state.displacement == again.displacement);
   }
 }
@@ -215,7 +232,10 @@ TEST_CASE("after a cut, a solid of several materials equals one built from scrat
 TEST_CASE("the fastest wave of all materials decides the number of leapfrog substeps") {
   const Body body = far_apart();
   Material slow = soft(), fast = soft();
-  slow.damping = 0, fast.young = 5e6, fast.density = 100, fast.damping = 0;
+  slow.damping = 0;
+  fast.young = 5e6;
+  fast.density = 100;
+  fast.damping = 0;
   const Environment env = clamped(body);
   std::size_t substeps = 0;
   const auto run = [&](const Materials& materials) {
@@ -246,7 +266,8 @@ TEST_CASE("the fastest wave of all materials decides the number of leapfrog subs
 TEST_CASE("invalid materials are refused") {
   const Body body = both(1);
   Material bad = soft(), nodal = soft();
-  bad.poisson = 0.7, nodal.discretisation = Discretisation::mueller04;
+  bad.poisson = 0.7;
+  nodal.discretisation = Discretisation::mueller04;
   CHECK_THROWS_WITH(Materials({soft(), bad}, numbers(body)), Catch::Contains("Poisson"));
   CHECK_THROWS_WITH(Materials({soft(), nodal}, numbers(body)), Catch::Contains("same discretisation"));
   CHECK_THROWS_WITH(Materials({soft(), soft()}, {0, 1, 2}), Catch::Contains("material 2"));

@@ -21,7 +21,9 @@ TEST_CASE("the inverse plastic stretch undoes a plastic stretch", "[plasticity]"
 
 TEST_CASE("material flows above its yield, at its creep, up to its bound", "[plasticity]") {
   Material m;
-  m.yield = 0.1, m.creep = 2, m.max_plastic = 0.3;
+  m.yield = 0.1;
+  m.creep = 2;
+  m.max_plastic = 0.3;
   const auto stretched = [](double strain) -> Mat3 { return Vec3(std::sqrt(1 + 2 * strain), 1, 1).asDiagonal(); };
   const Mat3 none = Mat3::Zero();
   CHECK(plastic_flow(m, none, stretched(0.09), 0.1) == none);

@@ -39,7 +39,8 @@ TEST_CASE("aggregates are connected sets of nodes of one component, of bounded s
     for (std::uint32_t i = 0; i < solid.size(); ++i) {
       REQUIRE(aggregates.of[i] < aggregates.count());
       nodes[aggregates.of[i]].push_back(i);
-      ++component_size[solid.component[i]], component_box[solid.component[i]].add(solid.position[i]);
+      ++component_size[solid.component[i]];
+      component_box[solid.component[i]].add(solid.position[i]);
     }
     double last = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k) {

@@ -39,10 +39,12 @@ Case any_case(Random& random) {
   for (int k = 0; k < 2; ++k)
     c.moduli.push_back({static_cast<float>(random.uniform(0.1, 1)), static_cast<float>(random.uniform(0, 3))});
   for (std::size_t j = 0; j < nodes; ++j) {
-    c.slot.push_back(static_cast<std::uint16_t>(random.below(slots))), c.free.push_back(random.below(6) > 0);
+    c.slot.push_back(static_cast<std::uint16_t>(random.below(slots)));
+    c.free.push_back(random.below(6) > 0);
     c.arm.push_back(Vec3::NullaryExpr([&] { return random.uniform(-1, 1); }));
   }
-  c.modes.resize((points + 7) / 8 * 8), c.block.entry_begin.assign(1, 0);
+  c.modes.resize((points + 7) / 8 * 8);
+  c.block.entry_begin.assign(1, 0);
   for (std::size_t i = 0; i < points; ++i) {
     MaterialPoint point{};
     point.material = static_cast<decltype(point.material)>(random.below(2));

@@ -13,7 +13,8 @@ namespace {
 
 Material rubber(double young) {
   Material m;
-  m.young = young, m.density = 1000;
+  m.young = young;
+  m.density = 1000;
   return m;
 }
 
@@ -65,7 +66,8 @@ struct Linearised {
     double product = 0, largest = 0;
     for (std::size_t i = 0; i < size(); ++i) {
       const Vec3 z = preconditioner.at(i);
-      product += r[i].dot(z), largest = std::max(largest, problem.squared_in_spacings(z, i));
+      product += r[i].dot(z);
+      largest = std::max(largest, problem.squared_in_spacings(z, i));
     }
     return {std::sqrt(product), std::sqrt(largest)};
   }
@@ -123,7 +125,8 @@ TEST_CASE("a direction ends where its residual is below the accuracy, or at a qu
                             product < rounding * std::sqrt(0.05) * initial;
     CHECK((is_accurate || ends_early));
     if (is_accurate && first) CHECK((ends_early || product < rounding * std::sqrt(0.3) * initial));
-    accurate += is_accurate, early += ends_early && !is_accurate;
+    accurate += is_accurate;
+    early += ends_early && !is_accurate;
   }
   CHECK(accurate > 10);
   CHECK(early > 10);

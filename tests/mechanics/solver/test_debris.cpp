@@ -19,7 +19,9 @@ Body random_debris(Random& random) {
   const int n = random.uniform() < 0.5 ? 2 : 3;
   for (int i = 0; i < n; ++i) {
     nodes.position.push_back({random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9)});
-    nodes.radius.push_back(2), nodes.spacing.push_back(0.8), nodes.volume.push_back(1.0 / n);
+    nodes.radius.push_back(2);
+    nodes.spacing.push_back(0.8);
+    nodes.volume.push_back(1.0 / n);
   }
   return build_body(Complex::from_skin(make_block({1, 1, 1}, 1)), std::move(nodes));
 }
@@ -38,7 +40,9 @@ double strain(const Body& d, const State& state) {
 
 Material material() {
   Material m;
-  m.young = 1e5, m.density = 1000, m.damping = 0;
+  m.young = 1e5;
+  m.density = 1000;
+  m.damping = 0;
   return m;
 }
 
@@ -81,8 +85,10 @@ TEST_CASE("debris turns with its nodes, and its gradient is that rotation", "[de
     const Vec3 spin = 20 * random.direction();
     Vec3 centre = Vec3::Zero();
     double mass = 0;
-    for (std::size_t i = 0; i < d.nodes.size(); ++i)
-      centre += solid.mass(NodeId(i)) * d.nodes.position[i], mass += solid.mass(NodeId(i));
+    for (std::size_t i = 0; i < d.nodes.size(); ++i) {
+      centre += solid.mass(NodeId(i)) * d.nodes.position[i];
+      mass += solid.mass(NodeId(i));
+    }
     centre /= mass;
     for (const Vec3& x : d.nodes.position) state.velocity.push_back(spin.cross(x - centre));
     Environment environment;

@@ -28,7 +28,10 @@ struct Halves {
     if (held) {
       environment.fixed.assign(n, 0);
       for (std::size_t i = 0; i < n; ++i)
-        if (half(i) == 0) environment.fixed[i] = 1, i = n;
+        if (half(i) == 0) {
+          environment.fixed[i] = 1;
+          i = n;
+        }
     }
     const Vec3 off = random.direction(), velocity = random.direction(), spin = 3 * random.direction();
     const Mat3 turn = turned(random.uniform(0, 3) * random.direction());
@@ -111,7 +114,8 @@ TEST_CASE("islands that turn are predicted on arcs: rigid motions are exact, and
                 .margin(1e-9));
       if (!halves.is_free(i)) continue;
       const double mass = halves.solid.mass(NodeId(static_cast<std::uint32_t>(i)));
-      residual += mass * (rigid[i] - noisy[i]).squaredNorm(), wrong += mass * (u[i] - noisy[i]).squaredNorm();
+      residual += mass * (rigid[i] - noisy[i]).squaredNorm();
+      wrong += mass * (u[i] - noisy[i]).squaredNorm();
     }
     CHECK(residual <= wrong * (1 + 1e-9));  // the nearest rigid motion is no farther than the true one
     CHECK(rotation.predict(shifted, rotates).empty());
@@ -130,7 +134,10 @@ TEST_CASE("a direction gets the momenta that inertia and loads alone give, and a
     const ActiveIslands active(potential.islands(), halves.solid.discretisation().subdomains);
     const std::size_t n = halves.solid.size();
     std::vector<Vec3> u = halves.start.displacement, direction(n);
-    for (std::size_t i = 0; i < n; ++i) u[i] += 0.02 * random.direction(), direction[i] = 0.1 * random.direction();
+    for (std::size_t i = 0; i < n; ++i) {
+      u[i] += 0.02 * random.direction();
+      direction[i] = 0.1 * random.direction();
+    }
     const std::vector<Vec3> before = direction;
     rotation.conserve_momentum(active, u, direction);
     Vec3 linear[2] = {Vec3::Zero(), Vec3::Zero()}, angular[2] = {Vec3::Zero(), Vec3::Zero()},
@@ -141,7 +148,8 @@ TEST_CASE("a direction gets the momenta that inertia and loads alone give, and a
       const Vec3 ballistic = halves.start.displacement[i] + problem.dt * halves.start.velocity[i] +
                              problem.dt * problem.dt * (halves.environment.gravity + halves.environment.load[i] / mass);
       const Vec3 missing = mass * (ballistic - u[i] - direction[i]);
-      linear[halves.half(i)] += missing, angular[halves.half(i)] += halves.position(i, u).cross(missing);
+      linear[halves.half(i)] += missing;
+      angular[halves.half(i)] += halves.position(i, u).cross(missing);
       if (halves.half(i) == 1) linear_before += mass * (ballistic - u[i] - before[i]);
       if (!halves.is_free(i)) CHECK(direction[i] == before[i]);
     }

@@ -15,7 +15,9 @@ namespace {
 
 Material rubber() {
   Material m;
-  m.young = 1e4, m.density = 1000, m.damping = 0;
+  m.young = 1e4;
+  m.density = 1000;
+  m.damping = 0;
   return m;
 }
 
@@ -71,16 +73,20 @@ TEST_CASE("what one part does is nothing to another") {
     const Vec3& x = body.nodes.position[i];
     if (x.x() > 0.5)
       torn.displacement[i] = 0.08 * random.direction();
-    else
-      state.velocity[i] = torn.velocity[i] = Vec3(0, 3 * x.x(), -x.z()), ++left;
+    else {
+      state.velocity[i] = torn.velocity[i] = Vec3(0, 3 * x.x(), -x.z());
+      ++left;
+    }
   }
   REQUIRE((left > 10 && left + 10 < body.nodes.size()));
-  solid.step_implicit(state, 0.03, env, 1e-4), solid.step_implicit(torn, 0.03, env, 1e-4);
+  solid.step_implicit(state, 0.03, env, 1e-4);
+  solid.step_implicit(torn, 0.03, env, 1e-4);
   double most = 0, moved = 0;
   for (std::size_t i = 0; i < body.nodes.size(); ++i)
-    if (body.nodes.position[i].x() < 0.5)
-      most = std::max(most, (torn.displacement[i] - state.displacement[i]).norm()),
+    if (body.nodes.position[i].x() < 0.5) {
+      most = std::max(most, (torn.displacement[i] - state.displacement[i]).norm());
       moved = std::max(moved, state.displacement[i].norm());
+    }
   CHECK(moved > 0.01);
   CHECK(most < 1e-4 * 0.12);
 }
@@ -134,7 +140,8 @@ TEST_CASE("what presses on one part does so once, whatever another begins anew")
 TEST_CASE("points side by side have the energy and the stress of one point's formulas") {
   for (const auto model : {ElasticModel::saint_venant_kirchhoff, ElasticModel::neo_hookean}) {
     Material m = rubber();
-    m.model = model, m.volume_term = 2e3;
+    m.model = model;
+    m.volume_term = 2e3;
     Random random(9);
     for (const double size : {1e-7, 1e-3, 0.3, 1.5, 20.0}) {
       constexpr std::size_t count = 24;
@@ -147,7 +154,8 @@ TEST_CASE("points side by side have the energy and the stress of one point's for
         for (int c = 0; c < 3; ++c)
           for (int r = 0; r < 3; ++r) {
             const double g = size * random.uniform(-1, 1);
-            gradient.column[c][4 * i + static_cast<std::size_t>(r)] = g, f[i](r, c) += g;
+            gradient.column[c][4 * i + static_cast<std::size_t>(r)] = g;
+            f[i](r, c) += g;
           }
       }
       PointMatrices<float> deformed;
@@ -189,7 +197,10 @@ TEST_CASE("what a solid keeps from step to step changes nothing but time") {
       const auto below = std::make_shared<RigidShape>(RigidShape::half_space(Vec3::UnitZ()));
       ObstaclePenalty ground(below, {1e6, 0.5}, place, place), ground_anew = ground;
       const bool touches = random.below(2) == 1;
-      if (touches) touch(ground), touch(ground_anew);
+      if (touches) {
+        touch(ground);
+        touch(ground_anew);
+      }
       env.fixed.assign(body.nodes.size(), 0);
       for (std::size_t i = 0; i < body.nodes.size(); ++i) env.fixed[i] = body.nodes.position[i].x() < 0.1 && k % 3 != 0;
       const double dt = random.below(3) ? 0.01 : 0.02;

@@ -92,7 +92,8 @@ TEST_CASE("islands are the sets of nodes that points and contact join, free-floa
     CHECK(islands.count() == numbers(islands.of_nodes()).size());
     CHECK(islands.free_count() == numbers(islands.free_of_nodes()).size());
     CHECK(*numbers(islands.of_nodes()).rbegin() + 1 == islands.count());
-    several += islands.count() > 1, coupled_islands += islands.count() < islands.free_count();
+    several += islands.count() > 1;
+    coupled_islands += islands.count() < islands.free_count();
     std::size_t listed = 0;
     for (std::size_t p = 0; p < islands.count(); ++p) {
       const auto nodes = islands.nodes(p);
@@ -146,14 +147,18 @@ TEST_CASE("sums, maxima and work run over the selected islands, and leave the en
     active.sum_and_maximum(sum2, maximum2, [&](std::size_t i) { return std::pair(term[i], term[i]); });
     CHECK(sum2 == sum);
     CHECK(maximum2 == maximum);
-    roots = sum, active.take_square_roots(roots);
+    roots = sum;
+    active.take_square_roots(roots);
     std::vector<int> visits(solid.size(), 0);
     active.each_node([&](std::size_t i) { ++visits[i]; });
     for (std::size_t p = 0; p < islands.count(); ++p) {
       double expected = mask[p] ? 0 : -1, largest = mask[p] ? 0 : -1;
       for (const auto i : islands.nodes(p)) {
         CHECK(visits[i] == mask[p]);
-        if (mask[p]) expected += term[i], largest = std::max(largest, term[i]);
+        if (mask[p]) {
+          expected += term[i];
+          largest = std::max(largest, term[i]);
+        }
       }
       CHECK(active[p] == (mask[p] != 0));
       CHECK(sum[p] == Approx(expected));

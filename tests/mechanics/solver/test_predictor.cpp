@@ -32,7 +32,8 @@ struct Bar {
   }
   static Material material(double young) {
     Material m;
-    m.young = young, m.damping = 0;
+    m.young = young;
+    m.damping = 0;
     return m;
   }
 };
@@ -75,7 +76,10 @@ TEST_CASE("a free flight is predicted exactly: velocity, and gravity or the acce
     Random random(seed);
     Bar bar(1e5);
     const Vec3 velocity = random.direction(), off = random.direction(), acceleration = 20 * random.direction();
-    for (std::size_t i = 0; i < bar.size(); ++i) bar.start.displacement[i] = off, bar.start.velocity[i] = velocity;
+    for (std::size_t i = 0; i < bar.size(); ++i) {
+      bar.start.displacement[i] = off;
+      bar.start.velocity[i] = velocity;
+    }
     bar.environment.gravity = 10 * random.direction();
     const Vec3 moved = off + bar.dt * velocity;
     {
@@ -129,9 +133,10 @@ TEST_CASE("where velocities are at odds with each other the beginning is a minim
     // The result is on the line, and a quarter of the way to either side nothing is lower. A share
     // above 0.8 becomes 1: then nothing is lower half way.
     double share = 0, length = 0;
-    for (std::size_t i = 0; i < straight.size(); ++i)
-      share += (prediction.at.u[i] - straight[i]).dot(bar.start.displacement[i] - straight[i]),
-          length += (bar.start.displacement[i] - straight[i]).squaredNorm();
+    for (std::size_t i = 0; i < straight.size(); ++i) {
+      share += (prediction.at.u[i] - straight[i]).dot(bar.start.displacement[i] - straight[i]);
+      length += (bar.start.displacement[i] - straight[i]).squaredNorm();
+    }
     share /= length;
     const auto on_line = [&](double s) {
       std::vector<Vec3> u;
@@ -142,7 +147,8 @@ TEST_CASE("where velocities are at odds with each other the beginning is a minim
     const auto there = on_line(share);
     for (std::size_t i = 0; i < there.size(); ++i) CHECK((there[i] - prediction.at.u[i]).norm() < 1e-12);
     const double value = prediction.at.value[0];
-    back += prediction.at.u != straight, between += share > 0.2 && share < 0.8;
+    back += prediction.at.u != straight;
+    between += share > 0.2 && share < 0.8;
     if (prediction.at.u == straight) continue;  // a shorter way than a fifth is not taken
     CHECK(share > 0.2);
     CHECK(share <= 1 + 1e-9);

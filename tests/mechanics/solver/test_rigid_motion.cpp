@@ -37,7 +37,10 @@ struct Nodes {
 
 Material stiff(double young, double poisson) {
   Material m;
-  m.young = young, m.poisson = poisson, m.density = 1000, m.damping = 0;
+  m.young = young;
+  m.poisson = poisson;
+  m.density = 1000;
+  m.damping = 0;
   return m;
 }
 
@@ -69,8 +72,9 @@ TEST_CASE("rigid motions are recovered from nodal displacements, the same by any
     for (std::size_t i = 0; i < n; ++i) {
       const auto p =
           static_cast<std::uint32_t>(i < 4 * sets ? i % sets : random.below(static_cast<std::uint32_t>(sets)));
-      nodes.set.push_back(p), nodes.mass.push_back(random.uniform(0.1, 2)),
-          nodes.position.push_back(far + size * random.direction());
+      nodes.set.push_back(p);
+      nodes.mass.push_back(random.uniform(0.1, 2));
+      nodes.position.push_back(far + size * random.direction());
       nodes.displacement.push_back(turned(truth[p].angle) * (nodes.position[i] - far) + far + truth[p].translation -
                                    nodes.position[i]);
     }
@@ -87,7 +91,8 @@ TEST_CASE("rigid motions are recovered from nodal displacements, the same by any
     for (std::size_t i = 0; i < n; ++i) {
       const RigidMotion& m = mean[nodes.set[i]];
       const Vec3 residual = nodes.mass[i] * (nodes.displacement[i] - m.linearised(nodes.position[i]));
-      linear[nodes.set[i]] += residual, angular[nodes.set[i]] += (nodes.position[i] - m.centre).cross(residual);
+      linear[nodes.set[i]] += residual;
+      angular[nodes.set[i]] += (nodes.position[i] - m.centre).cross(residual);
       const double share = random.uniform(0, 1);
       const Vec3 arm = nodes.position[i] - m.centre, rest = nodes.displacement[i] - m.linearised(nodes.position[i]);
       const Vec3 arc = share * m.translation + turned(share * m.angle) * (arm + share * rest) - arm;
@@ -130,8 +135,12 @@ TEST_CASE("a crumb of two nodes, which the nodal discretisation holds by its pen
           "[mechanics]") {
   NodeSet nodes;
   VisibilityGraph graph;
-  for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0.1, 0)})
-    nodes.position.push_back(x), nodes.radius.push_back(1.9), nodes.spacing.push_back(1), nodes.volume.push_back(1);
+  for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0.1, 0)}) {
+    nodes.position.push_back(x);
+    nodes.radius.push_back(1.9);
+    nodes.spacing.push_back(1);
+    nodes.volume.push_back(1);
+  }
   graph.storage().resize(2);
   graph.storage().add(nodes, 1u, 0u);
   build_neighborhoods(nodes, graph, TriangleBvh());

@@ -31,7 +31,9 @@ Bar bar(int nx, int ny, int nz, double jitter, std::uint64_t seed = 1) {
     b.nodes.position.push_back(
         h *
         (p + Vec3::Constant(0.5) + jitter * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))));
-    b.nodes.radius.push_back(1.9 * h), b.nodes.spacing.push_back(h), b.nodes.volume.push_back(h * h * h);
+    b.nodes.radius.push_back(1.9 * h);
+    b.nodes.spacing.push_back(h);
+    b.nodes.volume.push_back(h * h * h);
   }
   b.graph.storage().resize(b.nodes.size());
   for (std::uint32_t i = 0; i < b.nodes.size(); ++i)
@@ -47,7 +49,12 @@ State at_rest(const Bar& b) {
 
 Material material(ElasticModel model) {
   Material m;
-  m.model = model, m.young = 1e5, m.poisson = 0.3, m.density = 1000, m.damping = 0, m.volume_term = 3e4;
+  m.model = model;
+  m.young = 1e5;
+  m.poisson = 0.3;
+  m.density = 1000;
+  m.damping = 0;
+  m.volume_term = 3e4;
   return m;
 }
 
@@ -59,7 +66,10 @@ TEST_CASE("stress is the derivative of energy, and its derivative that of stress
     Random random(3);
     for (int i = 0; i < 50; ++i) {
       Mat3 f = Mat3::Identity(), d;
-      for (int k = 0; k < 9; ++k) f.data()[k] += 0.3 * random.uniform(-1, 1), d.data()[k] = random.uniform(-1, 1);
+      for (int k = 0; k < 9; ++k) {
+        f.data()[k] += 0.3 * random.uniform(-1, 1);
+        d.data()[k] = random.uniform(-1, 1);
+      }
       const double e = 1e-6;
       const double slope = (energy_density(m, f + e * d) - energy_density(m, f - e * d)) / (2 * e);
       CHECK((stress(m, f).array() * d.array()).sum() == Approx(slope).epsilon(1e-6).margin(1e-3));
@@ -77,9 +87,20 @@ TEST_CASE("rigid motion costs nothing and linear fields are exact on jittered no
   Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, -1, 2).normalized()).toRotationMatrix();
   Mat3 linear;
-  linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
+  linear << 0.1;
+  0.02;
+  -0.03;
+  0.01;
+  -0.05;
+  0.04;
+  0.0;
+  0.06;
+  0.02;
   std::vector<Vec3> rigid, stretched;
-  for (const auto& p : b.nodes.position) rigid.push_back(turn * p - p + Vec3(3, 2, 1)), stretched.push_back(linear * p);
+  for (const auto& p : b.nodes.position) {
+    rigid.push_back(turn * p - p + Vec3(3, 2, 1));
+    stretched.push_back(linear * p);
+  }
   CHECK(solid.energy(rigid) < 1e-12 * 1e5);
   for (const auto& f : solid.forces(rigid)) CHECK(f.norm() < 1e-8 * 1e5);
   for (const auto& g : solid.gradients(stretched)) CHECK((g - linear).norm() < 1e-10);
@@ -91,15 +112,21 @@ TEST_CASE("forces are minus the derivative of the energy, and sum to zero") {
     Solid solid(b.nodes, b.graph, material(model));
     Random random(5);
     std::vector<Vec3> u, d;
-    for (std::size_t i = 0; i < b.nodes.size(); ++i)
-      u.push_back(0.05 * random.direction()), d.push_back(random.direction());
+    for (std::size_t i = 0; i < b.nodes.size(); ++i) {
+      u.push_back(0.05 * random.direction());
+      d.push_back(random.direction());
+    }
     const auto f = solid.forces(u);
     double along = 0;
     Vec3 sum = Vec3::Zero();
     auto plus = u, minus = u;
     const double e = 1e-6;
-    for (std::size_t i = 0; i < u.size(); ++i)
-      along -= f[i].dot(d[i]), sum += f[i], plus[i] += e * d[i], minus[i] -= e * d[i];
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      along -= f[i].dot(d[i]);
+      sum += f[i];
+      plus[i] += e * d[i];
+      minus[i] -= e * d[i];
+    }
     CHECK(along == Approx((solid.energy(plus) - solid.energy(minus)) / (2 * e)).epsilon(1e-6));
     CHECK(sum.norm() < 1e-10 * 1e5);
   }
@@ -151,8 +178,10 @@ TEST_CASE("a clamped bar bends and comes to rest and a crushed one recovers with
 
 TEST_CASE("few, coplanar and no neighbours give no NaN") {
   Bar b = bar(4, 4, 1, 0.0);
-  b.nodes.position.push_back({50, 0, 0}), b.nodes.radius.push_back(0.5), b.nodes.spacing.push_back(0.25),
-      b.nodes.volume.push_back(0.01);
+  b.nodes.position.push_back({50, 0, 0});
+  b.nodes.radius.push_back(0.5);
+  b.nodes.spacing.push_back(0.25);
+  b.nodes.volume.push_back(0.01);
   b.graph.storage().resize(b.nodes.size());
   Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   CHECK(solid.discretisation().mls.quality(0) == MomentQuality::poor);
@@ -169,8 +198,9 @@ namespace {
 void insert_beside(Bar& b, std::uint32_t donor, const Vec3& offset, std::optional<std::uint32_t> sees) {
   b.nodes.volume[donor] *= 0.5;
   b.nodes.position.push_back(b.nodes.position[donor] + offset);
-  b.nodes.radius.push_back(double(b.nodes.radius[donor])), b.nodes.spacing.push_back(0.2),
-      b.nodes.volume.push_back(double(b.nodes.volume[donor]));
+  b.nodes.radius.push_back(double(b.nodes.radius[donor]));
+  b.nodes.spacing.push_back(0.2);
+  b.nodes.volume.push_back(double(b.nodes.volume[donor]));
   b.graph.storage().resize(b.nodes.size());
   if (sees) b.graph.storage().add(b.nodes, *sees, static_cast<std::uint32_t>(b.nodes.size() - 1));
 }

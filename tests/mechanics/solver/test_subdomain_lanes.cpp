@@ -123,7 +123,8 @@ TEST_CASE("Eight subdomains are inverted as each on its own, in all vectors, and
 TEST_CASE("A linearly dependent row of a subdomain is left out", "[mechanics]") {
   EightSubdomains eight;
   eight.begin(2);
-  eight.shear.fill(1), std::fill(eight.share.begin(), eight.share.end(), 1.0f);
+  eight.shear.fill(1);
+  std::fill(eight.share.begin(), eight.share.end(), 1.0f);
   for (const std::size_t k : {0, 4, 8})
     for (std::size_t l = 0; l < 8; ++l) {
       eight.turn[8 * k + l] = 1;
@@ -136,7 +137,12 @@ TEST_CASE("A linearly dependent row of a subdomain is left out", "[mechanics]") 
     for (std::size_t l = 0; l < 8; ++l) {
       const Eigen::MatrixXd m = got(inverse, l, 6);
       Eigen::VectorXd diagonal(6);
-      diagonal << 2 / 3.0, 0.5, 2 / 3.0, 2 / 3.0, 0, 2 / 3.0;
+      diagonal << 2 / 3.0;
+      0.5;
+      2 / 3.0;
+      2 / 3.0;
+      0;
+      2 / 3.0;
       CHECK((m.diagonal() - diagonal).norm() < 0.01);
       CHECK(m(1, 4) == 0);
       CHECK(m(0, 3) == Approx(-1 / 3.0).epsilon(0.01));

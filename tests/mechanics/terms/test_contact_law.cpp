@@ -92,8 +92,10 @@ TEST_CASE("friction of an explicit step stops the slip or gives the bound, and i
     double rest = 0;
     for (std::uint32_t node = 0; node < 5; ++node) {
       const double w = node < 4 ? random.uniform(-1, 1) : -rest;
-      rest += w, stencil.push_back({node, w});
-      inverse_mass.push_back(1 / random.uniform(0.1, 2)), velocity.push_back(random.direction());
+      rest += w;
+      stencil.push_back({node, w});
+      inverse_mass.push_back(1 / random.uniform(0.1, 2));
+      velocity.push_back(random.direction());
     }
     const double inverse = effective_inverse_mass(stencil, inverse_mass);
     const auto momentum = [&] {

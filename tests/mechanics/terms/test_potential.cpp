@@ -113,7 +113,8 @@ TEST_CASE("a stencil matrix has the same entries by stencil and by node", "[pote
       const auto entries = matrix.stencils_of(i);
       for (std::size_t k = 0; k < entries.size(); ++k) {
         CHECK((k == 0 || entries[k - 1].index < entries[k].index));
-        by_node(entries[k].index, i) += entries[k].weight, precise(entries[k].index, i) += matrix.weights_of(i)[k];
+        by_node(entries[k].index, i) += entries[k].weight;
+        precise(entries[k].index, i) += matrix.weights_of(i)[k];
       }
     }
     CHECK((by_stencil - expected.cast<float>().cast<double>()).norm() == 0);

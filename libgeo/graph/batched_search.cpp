@@ -177,8 +177,7 @@ void Collect(const LocalGraph& graph, BatchedSearch::Scratch& s) {
   const hn::FixedTag<std::uint32_t, all> d;
   const auto zero = hn::Zero(d), far = hn::Set(d, BatchedSearch::far), radius = hn::Set(d, unit_radius);
   for (std::size_t first = 0; first < count; first += all) {
-    alignas(64) std::uint32_t ids[all] = {};
-    joined[all] = {};
+    alignas(64) std::uint32_t ids[all] = {}, joined[all] = {};
     hn::Vec<decltype(d)> distance[all];
     const std::size_t here = std::min(all, count - first);
     for (std::size_t n = 0; n < here; ++n) {

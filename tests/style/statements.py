@@ -14,7 +14,7 @@ TOKEN = re.compile(
 # Words that begin a declaration, or what is no expression.
 OTHER = set("""using typedef template static_assert goto case default break continue namespace struct class enum union friend
 public private protected delete extern operator throw const static constexpr auto unsigned signed int double bool float char
-long short void volatile thread_local mutable inline typename""".split())
+long short void volatile thread_local mutable inline typename alignas""".split())
 BEFORE_BLOCK = {")", "else", "do", "try", "const", "noexcept", "override", "mutable", "final"}
 IN_TEMPLATE = {"::", ",", "*", "&", "<", ">", "()", "+", "<<"}
 

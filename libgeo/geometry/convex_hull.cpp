@@ -19,10 +19,10 @@ namespace {
 struct Facet {
   Triangle v;
   Vec3 normal;
-  double error = 0;                    // of distances, at most
-  std::vector<std::uint32_t> outside;  // points in front of this facet that are assigned to no other one
-  std::uint32_t farthest = ~0u;        // of these; ~0u: none
-  double distance = -1;                // of the farthest one
+  double error = 0;                      // of distances, at most
+  std::vector<std::uint32_t> outside{};  // points in front of this facet that are assigned to no other one
+  std::uint32_t farthest = ~0u;          // of these; ~0u: none
+  double distance = -1;                  // of the farthest one
 };
 
 enum class Assignment { first_facet, farthest_facet };

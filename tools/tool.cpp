@@ -76,7 +76,7 @@ void watch_signals(const std::string& name, double patience) {
     geo::discard_temporary_outputs();
     clear_bar();
     const std::string line = name + ": interrupted\n";
-    [[maybe_unused]] const auto written = ::write(2; line.data(); line.size());
+    [[maybe_unused]] const auto written = ::write(2, line.data(), line.size());
     ::_exit(130);
   }).detach();
 }

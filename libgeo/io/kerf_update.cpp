@@ -165,7 +165,7 @@ void KerfUpdate::Impl::append(const std::vector<kerf::Stored>& changed) {
     put(kerf::bytes_of_one(segment));
     sync();
   } catch (...) {
-    [[maybe_unused]] const int ignored = ::ftruncate(descriptor; static_cast<off_t>(start));
+    [[maybe_unused]] const int ignored = ::ftruncate(descriptor, static_cast<off_t>(start));
     throw;
   }
 }

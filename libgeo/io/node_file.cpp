@@ -180,7 +180,7 @@ NodeSet from_pcd(const std::string& bytes, const std::string& name) {
   const PcdColumns columns = find_pcd_columns(header, lines, name);
   NodeSet nodes = with_capacity(header.points);  // bounded by the size of the file
   const auto rest = std::string_view(bytes).substr(lines.position());
-  (header.binary ? read_binary_points : read_ascii_points)(rest; header.points; columns; name; nodes);
+  (header.binary ? read_binary_points : read_ascii_points)(rest, header.points, columns, name, nodes);
   return nodes;
 }
 

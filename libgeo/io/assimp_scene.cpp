@@ -60,18 +60,7 @@ enum class RootTransform { of_file, of_assimp };
 
 Transform transform_of(const aiMatrix4x4& m) {
   Transform result;
-  result << m.a1;
-  m.a2;
-  m.a3;
-  m.a4;
-  m.b1;
-  m.b2;
-  m.b3;
-  m.b4;
-  m.c1;
-  m.c2;
-  m.c3;
-  m.c4;
+  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
   return result;
 }
 

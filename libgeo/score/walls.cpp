@@ -18,9 +18,7 @@ Mat3 frame_along(const Vec3& axis) {
   int least = 0;
   z.cwiseAbs().minCoeff(&least);
   const Vec3 x = (Vec3::Unit(least) - z[least] * z).normalized();
-  frame << x;
-  z.cross(x);
-  z;
+  frame << x, z.cross(x), z;
   return frame;
 }
 

@@ -51,15 +51,7 @@ std::vector<Mat3> averaged_stress(const Body& body, const Solid& solid, const St
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const StressSums& s = sums[i];
     if (!(s[6] > 0)) continue;
-    mean[i] << s[0];
-    s[3];
-    s[5];
-    s[3];
-    s[1];
-    s[4];
-    s[5];
-    s[4];
-    s[2];
+    mean[i] << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
     mean[i] /= s[6];
   }
   return mean;

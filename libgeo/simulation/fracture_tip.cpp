@@ -45,15 +45,7 @@ Mat3 mode_stress(double poisson, int mode, double r, double angle) {
     yz = c;
   }
   Mat3 stress;
-  stress << xx;
-  xy;
-  xz;
-  xy;
-  yy;
-  yz;
-  xz;
-  yz;
-  poisson*(xx + yy);
+  stress << xx, xy, xz, xy, yy, yz, xz, yz, poisson * (xx + yy);
   return stress / std::sqrt(2 * std::numbers::pi * r);
 }
 

@@ -108,15 +108,7 @@ std::vector<Finding> patch(int size) {
     }
     Solid solid(body, steel_like());
     Mat3 linear;
-    linear << 0.1;
-    0.02;
-    -0.03;
-    0.01;
-    -0.05;
-    0.04;
-    0.0;
-    0.06;
-    0.02;
+    linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
     std::vector<Vec3> u;
     for (const Vec3& x : body.nodes.position) u.push_back(linear * x);
     double worst = 0;

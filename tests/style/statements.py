@@ -1,7 +1,7 @@
 """Finds statements that a comma separates: `a = 1, b = 2;` is two statements on one line.
 
 comma_statements(text) gives the lines on which C++ text has such statements. Declarations of several variables, headers of
-`for`, arguments of templates, and commas inside of parentheses, brackets and braces are none.
+`for`, arguments of templates, initialisers of matrices, and commas inside of parentheses, brackets and braces are none.
 """
 import re
 
@@ -110,7 +110,9 @@ def is_separated(statement):
         part = part[1:]
     elif part and (part[0][1] in OTHER or declares(part)):
         return False
-    return any(word == "," for _, word, _ in part)
+    words = [word for _, word, _ in part]
+    # Eigen's initialiser of a matrix: m << 1, 2, 3;
+    return "," in words and "<<" not in words[:words.index(",")]
 
 
 def comma_statements(text):

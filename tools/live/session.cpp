@@ -90,9 +90,7 @@ bool is_straight(const EdgePose& from, std::span<const EdgePose> between, const 
 // The pose of an edge along local z, whose back is along local x.
 geo::Pose pose_of(const geo::Vec3& origin, const geo::Vec3& direction, const geo::Vec3& back) {
   geo::Mat3 axes;
-  axes << back;
-  direction.cross(back);
-  direction;
+  axes << back, direction.cross(back), direction;
   return {origin, Eigen::Quaterniond(axes).normalized()};
 }
 

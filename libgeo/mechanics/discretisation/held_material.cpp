@@ -166,10 +166,8 @@ std::vector<HeldMaterial::Anchors> HeldMaterial::anchors_of(const Body& body,
   for (const auto& [key, nodes] : held)
     if (const auto four = wide_tetrahedron(body.nodes, nodes)) {
       Eigen::Matrix4d corners;
-      for (Eigen::Index a = 0; a < 4; ++a) {
-        corners.col(a) << 1;
-        body.nodes.position[(*four)[static_cast<std::size_t>(a)]];
-      }
+      for (Eigen::Index a = 0; a < 4; ++a)
+        corners.col(a) << 1, body.nodes.position[(*four)[static_cast<std::size_t>(a)]];
       all.push_back({key.first, key.second, *four, corners.inverse()});
     }
   return all;

@@ -47,8 +47,7 @@ double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::v
   Mat4 m = Mat4::Zero();
   for (std::size_t j = 0; j < n; ++j) {
     const double h = nodes[j].support / scale, s = nodes[j].distance / nodes[j].support;
-    p[j] << 1;
-    (nodes[j].position - x) / scale;
+    p[j] << 1, (nodes[j].position - x) / scale;
     // Quartic spline: w = 1 − 6 s² + 8 s³ − 3 s⁴, ∂w = −12 s (1 − s)² ∂s. (kernel.h is the kernel
     // of nodal gradients and of Eq. 1, not of these shape functions.)
     w[j] = 1 + s * s * (-6 + s * (8 - 3 * s));

@@ -158,10 +158,7 @@ void PotentialSum::multiply_hessian(const std::vector<Vec3>& p) {
   if (matrices_[0].size() == 0) return;
   single_precision_.resize(start_.size());
   parallel_for(start_.size(), 8192, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      single_precision_[i] << p[i].cast<float>();
-      0;
-    }
+    for (std::size_t i = begin; i < end; ++i) single_precision_[i] << p[i].cast<float>(), 0;
   });
   for (const auto& matrix : matrices_)
     parallel_for(matrix.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {

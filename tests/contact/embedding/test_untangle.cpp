@@ -67,15 +67,7 @@ TEST_CASE("nothing moves without crossings among marked triangles", "[untangle]"
 TEST_CASE("fresh triangles are untangled along the deformed direction, and moved ones are marked", "[untangle]") {
   // The material has turned by a right angle about x: rest z is now y.
   Mat3 turn;
-  turn << 1;
-  0;
-  0;
-  0;
-  0;
-  1;
-  0;
-  -1;
-  0;
+  turn << 1, 0, 0, 0, 0, 1, 0, -1, 0;
   Tangle t = swapped(0.01);
   t.positions[4] = {0, 0.5, -0.003};
   t.positions[5] = {0.5, -0.5, -0.003};

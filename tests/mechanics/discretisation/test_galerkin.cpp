@@ -72,15 +72,7 @@ TEST_CASE("patch test: linear fields have constant strain at all points, with a 
   const Body body = cut_block(steps);
   Solid solid(body, soft());
   Mat3 linear;
-  linear << 0.1;
-  0.02;
-  -0.03;
-  0.01;
-  -0.05;
-  0.04;
-  0.0;
-  0.06;
-  0.02;
+  linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
   const auto u = field(body, [&](const Vec3& x) { return Vec3(linear * x + Vec3(7, 8, 9)); });
   double worst = 0;
   for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {

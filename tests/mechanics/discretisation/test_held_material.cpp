@@ -58,15 +58,7 @@ TEST_CASE("near held boxes, affine fields keep their gradient", "[held]") {
   solid.hold(body, both_ends(2, 0.4, 1.7));
   REQUIRE_FALSE(solid.discretisation().points.blocks == plain);
   Mat3 linear;
-  linear << 0.1;
-  0.02;
-  -0.03;
-  0.01;
-  -0.05;
-  0.04;
-  0.0;
-  0.06;
-  0.02;
+  linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
   std::vector<Vec3> u;
   for (const Vec3& x : body.nodes.position) u.push_back(linear * x + Vec3(7, 8, 9));
   double worst = 0;

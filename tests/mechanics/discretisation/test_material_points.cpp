@@ -116,15 +116,7 @@ TEST_CASE("gradients and divergence of a block are a dense matrix and its transp
       quantised_divergence(block, matrices_of(s), single.data());
       CHECK((unpadded(single) - b.transpose() * s).cwiseAbs().maxCoeff() < double(3 * points) * 1e-4 * size);
       // A constant field has no gradient but the affine one, which points without nodes do not get.
-      affine << 1;
-      2;
-      3;
-      4;
-      5;
-      6;
-      7;
-      8;
-      9;
+      affine << 1, 2, 3, 4, 5, 6, 7, 8, 9;
       const Eigen::VectorXd ones = Eigen::VectorXd::Ones(u.size());
       quantised_gradients(block, padded_field<float>(ones).data(), affine, gradient);
       const Eigen::VectorXd constant = unpadded(gradient, points);

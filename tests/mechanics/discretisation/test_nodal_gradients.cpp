@@ -35,15 +35,7 @@ TEST_CASE("gradients at nodes are exact for linear fields, and all ways to compu
   const NodalGradientOperator gradients = operator_of(body);
   REQUIRE(gradients.size() == body.nodes.size());
   Mat3 linear;
-  linear << 0.1;
-  0.2;
-  0;
-  -0.3;
-  0.1;
-  0.4;
-  0.2;
-  0;
-  0.5;
+  linear << 0.1, 0.2, 0, -0.3, 0.1, 0.4, 0.2, 0, 0.5;
   std::vector<Vec3> u;
   for (const Vec3& x : body.nodes.position) u.push_back(linear * x + Vec3(5, 6, 7));
   Random random(1);

@@ -65,15 +65,7 @@ TEST_CASE("Eq. 1 reproduces an affine motion, and falls back on the first node's
   Random random(2);
   NodeSet set;
   Mat3 gradient;
-  gradient << 0.1;
-  0.2;
-  0;
-  -0.3;
-  0.1;
-  0.4;
-  0.2;
-  0;
-  0.5;
+  gradient << 0.1, 0.2, 0, -0.3, 0.1, 0.4, 0.2, 0, 0.5;
   const Vec3 shift(1, 2, 3), x(0.1, -0.05, 0.2);
   std::vector<std::pair<NodeId, double>> nodes;
   std::vector<Vec3> u;

@@ -87,15 +87,7 @@ TEST_CASE("rigid motion costs nothing and linear fields are exact on jittered no
   Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, -1, 2).normalized()).toRotationMatrix();
   Mat3 linear;
-  linear << 0.1;
-  0.02;
-  -0.03;
-  0.01;
-  -0.05;
-  0.04;
-  0.0;
-  0.06;
-  0.02;
+  linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
   std::vector<Vec3> rigid, stretched;
   for (const auto& p : b.nodes.position) {
     rigid.push_back(turn * p - p + Vec3(3, 2, 1));

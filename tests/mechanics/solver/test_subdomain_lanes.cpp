@@ -137,12 +137,7 @@ TEST_CASE("A linearly dependent row of a subdomain is left out", "[mechanics]") 
     for (std::size_t l = 0; l < 8; ++l) {
       const Eigen::MatrixXd m = got(inverse, l, 6);
       Eigen::VectorXd diagonal(6);
-      diagonal << 2 / 3.0;
-      0.5;
-      2 / 3.0;
-      2 / 3.0;
-      0;
-      2 / 3.0;
+      diagonal << 2 / 3.0, 0.5, 2 / 3.0, 2 / 3.0, 0, 2 / 3.0;
       CHECK((m.diagonal() - diagonal).norm() < 0.01);
       CHECK(m(1, 4) == 0);
       CHECK(m(0, 3) == Approx(-1 / 3.0).epsilon(0.01));

@@ -159,12 +159,12 @@ TEST_CASE("steps and plans that no longer fit the surface are refused") {
   }
   SECTION("an embedding that was planned before the surface moved") {
     std::optional<EmbeddingPlan> plan;
-    const BodyDelta delta =
-        split(block.body, block.front, {{-0.3, 0.5, 0.4}, {0.5, 0.55, 0.4}, {1.3, 0.5, 0.4}}, {}, nullptr,
-              [&](const Complex& grown, const CrackDelta& crack) {
-                plan = block.contact.plan_embedding(block.body, block.solid, block.state, grown, crack);
-                finish(begin());
-              });
+    const std::vector<Vec3> next{{-0.3, 0.5, 0.4}, {0.5, 0.55, 0.4}, {1.3, 0.5, 0.4}};
+    CrackTransaction step(block.body, block.front, next, {}, nullptr);
+    const BodyDelta delta = step.commit(block.front, [&](const Complex& grown, const CrackDelta& crack) {
+      plan = block.contact.plan_embedding(block.body, block.solid, block.state, grown, crack);
+      finish(begin());
+    });
     REQUIRE(plan.has_value());
     CHECK_THROWS_AS(block.contact.commit(std::move(*plan), block.body, delta), std::logic_error);
   }

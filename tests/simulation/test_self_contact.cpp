@@ -74,8 +74,9 @@ TEST_CASE("what a crack step needs of contact before it is made counts as contac
   double seconds = 0;
   std::optional<EmbeddingPlan> plan;
   auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 1.3, 0.53}}, false, 1);
-  split(body, front, {{0.6, -0.3, 0.5}, {0.6, 1.3, 0.51}}, {}, nullptr,
-        collisions.embedding_check(body, solid, state, plan, seconds));
+  const std::vector<Vec3> next{{0.6, -0.3, 0.5}, {0.6, 1.3, 0.51}};
+  CrackTransaction(body, front, next, {}, nullptr)
+      .commit(front, collisions.embedding_check(body, solid, state, plan, seconds));
   CHECK(seconds > 0);
   CHECK(plan.has_value());
 }

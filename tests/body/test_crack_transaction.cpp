@@ -1,0 +1,71 @@
+// A crack step is made as a whole, or the body is as before it.
+#include <catch2/catch.hpp>
+#include <optional>
+#include <utility>
+
+#include "body/crack_transaction.h"
+#include "kerf/error.h"
+#include "kerf/mesh.h"
+#include "kerf/nodes.h"
+
+using namespace geo;
+
+namespace {
+
+Body cube() {
+  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
+  return build_body(Complex::from_skin(mesh), sample_nodes(mesh, {.spacing = 0.2}));
+}
+
+std::vector<Vec3> edge(double x) { return {{x, -0.3, 0.52}, {x, 1.3, 0.47}}; }
+
+bool are_equal(const Body& a, const Body& b) {
+  const TriangleMesh s = a.surface.two_sided(), t = b.surface.two_sided();
+  return s.vertices == t.vertices && s.triangles == t.triangles && a.nodes.position == b.nodes.position &&
+         a.binding == b.binding && a.crack_steps == b.crack_steps;
+}
+
+}  // namespace
+
+TEST_CASE("a crack transaction that is not committed leaves the body as it was") {
+  Body body = cube();
+  const Body before = body;
+  FrontState front = begin_front(edge(-0.3), false, 1);
+  SECTION("it ends") {
+    const CrackTransaction step(body, front, edge(0.6), {}, nullptr);
+    CHECK(body.surface.live_face_count() > before.surface.live_face_count());
+  }
+  SECTION("it is prepared, moved and ends") {
+    CrackTransaction step(body, front, edge(0.6), {}, nullptr);
+    step.prepare();
+    std::optional<CrackTransaction> other(std::move(step));
+    CHECK(body.surface.live_face_count() > before.surface.live_face_count());
+  }
+  SECTION("another one takes its place") {
+    CrackTransaction step(body, front, edge(0.6), {}, nullptr);
+    step = CrackTransaction(std::move(step));
+    CHECK(body.surface.live_face_count() > before.surface.live_face_count());
+  }
+  SECTION("it is vetoed") {
+    CrackTransaction step(body, front, edge(0.6), {}, nullptr);
+    const auto veto = [](const Complex&, const CrackDelta&) { throw GeometryError("no"); };
+    CHECK_THROWS_AS(step.commit(front, veto), GeometryError);
+    CHECK(front.step == 0);
+  }
+  CHECK(are_equal(body, before));
+}
+
+TEST_CASE("a committed transaction is a step of split()") {
+  Body body = cube(), other = body;
+  FrontState front = begin_front(edge(-0.3), false, 1), other_front = front;
+  for (const double x : {0.4, 0.7, 1.3}) {
+    CrackTransaction step(body, front, edge(x), {}, nullptr);
+    step.prepare();
+    const BodyDelta delta = step.commit(front);
+    const BodyDelta wanted = split(other, other_front, edge(x));
+    CHECK(delta.crack.new_faces == wanted.crack.new_faces);
+    CHECK(delta.donors == wanted.donors);
+    CHECK(are_equal(body, other));
+  }
+  CHECK(front.step == 3);
+}

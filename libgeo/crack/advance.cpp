@@ -156,7 +156,8 @@ Vec3 offset_from_faces(const Complex& complex, Vec3 p, double distance) {
 struct Snapping {
   double reach;  // model units
   enum class To { vertices, vertices_and_edges } to;
-  double thickness;  // model units; an attempt that cuts off a speck thinner than this fails
+  double thickness;                           // of specks, model units; see crack::find_specks()
+  enum class Specks { refuse, join } specks;  // an attempt that cuts off specks fails, or joins them to the rest
 };
 
 struct Step {
@@ -181,6 +182,26 @@ std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, Delta
   return count;
 }
 
+// Joins the specks that a step has cut off to what is beside them: they lose a face of the crack.
+// Adds the changes to `sum`; returns whether there are any. Throws GeometryError where specks are
+// refused.
+bool join_specks(Complex& complex, const CrackDelta& delta, const Snapping& snapping, DeltaSum& sum) {
+  if (!(snapping.thickness > 0)) return false;
+  // Two specks that lie on each other are one after the first round.
+  constexpr int most_rounds = 4;
+  bool any = false;
+  for (int round = 0; round < most_rounds; ++round) {
+    const std::vector<FaceId> joints = crack::find_specks(complex, delta, snapping.thickness);
+    if (joints.empty()) break;
+    if (snapping.specks == Snapping::Specks::refuse) throw GeometryError("a speck would come off");
+    ComplexEdit edit;
+    edit.removed_faces = joints;
+    sum.add(complex.apply(edit));
+    any = true;
+  }
+  return any;
+}
+
 // One attempt. Throws GeometryError, K unchanged, when the guard refuses it.
 Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>& next, const Snapping& snapping,
               double clearance, CrackStats& stats) {
@@ -194,15 +215,14 @@ Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>
   crack::Arrangement arrangement(complex, strip);
   std::vector<VertexId> vertex;
   const CrackDelta delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats);
-  if (snapping.thickness > 0 && crack::leaves_speck(complex, delta, snapping.thickness))
-    throw GeometryError("a speck would come off");
-  const bool is_divided = !sum.empty();
-  if (is_divided && delta.empty()) throw GeometryError("edges are divided where nothing is cut");
+  if (!sum.empty() && delta.empty()) throw GeometryError("edges are divided where nothing is cut");
+  const bool is_one_edit = sum.empty();
+  if (!is_one_edit || snapping.thickness > 0) sum.add(delta);
+  const bool has_joined = join_specks(complex, delta, snapping, sum);
+  result.delta = is_one_edit && !has_joined ? delta : sum.sum();
   watch.lap();
   advance_contacts(result.front, complex, strip, arrangement, vertex);
   stats.stitch_seconds += watch.lap();
-  sum.add(delta);
-  result.delta = is_divided ? sum.sum() : delta;
   edits.keep();
   return result;
 }
@@ -329,20 +349,24 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
       return {};
     }
   };
+  const double thickness = options.snap_edges * size;
   if (options.snap_edges > 0) {
-    const Snapping to_edges{.reach = std::max(options.snap, options.snap_edges) * size,
-                            .to = Snapping::To::vertices_and_edges,
-                            .thickness = options.snap_edges * size};
+    Snapping to_edges{.reach = std::max(options.snap, options.snap_edges) * size,
+                      .to = Snapping::To::vertices_and_edges,
+                      .thickness = thickness,
+                      .specks = Snapping::Specks::refuse};
     for (const double share : shorter_ways)
       if (auto delta = attempt(old, shortened(old, offset_next, share), to_edges, options.clearance * size))
         return std::move(*delta);
+    to_edges.specks = Snapping::Specks::join;
+    if (auto delta = attempt(old, offset_next, to_edges, options.clearance * size)) return std::move(*delta);
   }
   for (int number = 0; number <= options.attempts; ++number) {
     const auto [jitter, clearance] = crack::attempt_at(number, options, size);
-    // The attempts that insist on the clearance insist on no specks, too.
     const Snapping to_vertices{.reach = options.snap * size,
                                .to = Snapping::To::vertices,
-                               .thickness = clearance > 0 ? options.snap_edges * size : 0};
+                               .thickness = thickness,
+                               .specks = Snapping::Specks::join};
     std::vector<Vec3> target = offset_next;
     FrontState from = old;
     if (number > 0) displace_front(from, target, jitter, random);

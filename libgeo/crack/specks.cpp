@@ -2,8 +2,8 @@
 #include "crack/specks.h"
 
 #include <algorithm>
+#include <optional>
 #include <unordered_set>
-#include <vector>
 
 namespace geo::crack {
 namespace {
@@ -12,8 +12,8 @@ std::uint64_t key_of(Side s) { return 2 * std::uint64_t(s.face.value) + static_c
 
 class SpeckSearch {
  public:
-  SpeckSearch(const Complex& complex, double thickness, std::size_t most_sides)
-      : complex_(complex), thickness_(thickness), most_sides_(most_sides) {}
+  SpeckSearch(const Complex& complex, const std::vector<FaceId>& fresh, double thickness, std::size_t most_sides)
+      : complex_(complex), fresh_(fresh.begin(), fresh.end()), thickness_(thickness), most_sides_(most_sides) {}
 
   // Whether the part of the surface with this side is a speck that was not visited before.
   bool is_speck(Side start) {
@@ -27,16 +27,45 @@ class SpeckSearch {
         if (visited_.insert(key_of(next)).second)
           part_.push_back(next);
         else
-          is_new = is_new && std::find(part_.begin(), part_.end(), next) != part_.end();
+          is_new = is_new && has(next);
       }
     }
     return is_new && is_thin();
   }
 
+  // The largest new crack face between the speck found last and the rest, if there is one. Faces at
+  // the border of a sheet come last: fronts have their vertices there.
+  std::optional<FaceId> joint() const {
+    std::optional<FaceId> best;
+    double largest = 0;
+    bool best_is_inner = false;
+    for (const Side s : part_) {
+      if (!fresh_.contains(s.face) || has({s.face, 1 - s.which})) continue;
+      const bool is_inner = !has_border(s.face);
+      const auto [a, b, c] = complex_.corners(s.face);
+      const double area = (b - a).cross(c - a).norm();
+      if (best && (is_inner == best_is_inner ? area <= largest : best_is_inner)) continue;
+      best = s.face;
+      largest = area;
+      best_is_inner = is_inner;
+    }
+    return best;
+  }
+
  private:
+  bool has(Side s) const { return std::find(part_.begin(), part_.end(), s) != part_.end(); }
+
+  bool has_border(FaceId f) const {
+    const auto& v = complex_.face(f).v;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (complex_.faces_around(v[k], v[(k + 1) % 3]).size() == 1) return true;
+    return false;
+  }
+
   bool is_thin() const {
     const Vec3& origin = complex_.corners(part_[0].face)[0];
-    double volume = 0, area = 0;
+    double volume = 0;
+    double area = 0;
     for (const Side s : part_) {
       const auto [a, b, c] = complex_.corners(s.face);
       const Vec3 normal = (s.which == 0 ? 1 : -1) * (b - a).cross(c - a);
@@ -47,6 +76,7 @@ class SpeckSearch {
   }
 
   const Complex& complex_;
+  std::unordered_set<FaceId> fresh_;
   double thickness_;
   std::size_t most_sides_;
   std::unordered_set<std::uint64_t> visited_;
@@ -55,12 +85,18 @@ class SpeckSearch {
 
 }  // namespace
 
-bool leaves_speck(const Complex& complex, const CrackDelta& delta, double thickness, std::size_t most_sides) {
-  SpeckSearch search(complex, thickness, most_sides);
+std::vector<FaceId> find_specks(const Complex& complex, const CrackDelta& delta, double thickness,
+                                std::size_t most_sides) {
+  SpeckSearch search(complex, delta.new_crack_faces, thickness, most_sides);
+  std::vector<FaceId> joints;
   for (const FaceId f : delta.new_crack_faces)
-    for (int which = 0; which < 2; ++which)
-      if (search.is_speck({f, which})) return true;
-  return false;
+    for (int which = 0; which < 2 && complex.alive(f); ++which) {
+      if (!search.is_speck({f, which})) continue;
+      if (const auto joint = search.joint()) joints.push_back(*joint);
+    }
+  std::sort(joints.begin(), joints.end());
+  joints.erase(std::unique(joints.begin(), joints.end()), joints.end());
+  return joints;
 }
 
 }  // namespace geo::crack

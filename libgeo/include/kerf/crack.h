@@ -71,8 +71,9 @@ struct CrackOptions {
   double snap = 1e-14;
   /// As snap, for edges of K, too: they are divided where the strip passes, and it goes through
   /// them. A refused step, or one that cuts off a speck thinner than this, is repeated with a
-  /// shorter way before the front is displaced. 0: edges stay. For advance() in material that
-  /// deforms, where slivers beside an edge fold.
+  /// shorter way before the front is displaced; at last, specks lose a face and are a part of what
+  /// is beside them. 0: edges stay. For advance() in material that deforms, where slivers beside an
+  /// edge fold.
   double snap_edges = 0;
   /// New front points off K but nearer to a face than face_offset / 100 move away from it by
   /// face_offset. Otherwise the strip would have needles there.

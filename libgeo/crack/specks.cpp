@@ -1,4 +1,5 @@
-// A walk over neighbouring sides from each new crack face. Large parts of the surface end it early.
+// A walk over neighbouring sides from each new face, children of earlier ones included: a strip may
+// lie on these. Large parts of the surface end it early.
 #include "crack/specks.h"
 
 #include <algorithm>
@@ -33,14 +34,14 @@ class SpeckSearch {
     return is_new && is_thin();
   }
 
-  // The largest new crack face between the speck found last and the rest, if there is one. Faces at
+  // The largest new face of a crack between the speck found last and the rest, if there is one. Faces at
   // the border of a sheet come last: fronts have their vertices there.
   std::optional<FaceId> joint() const {
     std::optional<FaceId> best;
     double largest = 0;
     bool best_is_inner = false;
     for (const Side s : part_) {
-      if (!fresh_.contains(s.face) || has({s.face, 1 - s.which})) continue;
+      if (complex_.face(s.face).crack == 0 || !fresh_.contains(s.face) || has({s.face, 1 - s.which})) continue;
       const bool is_inner = !has_border(s.face);
       const auto [a, b, c] = complex_.corners(s.face);
       const double area = (b - a).cross(c - a).norm();
@@ -63,7 +64,7 @@ class SpeckSearch {
   }
 
   bool is_thin() const {
-    const Vec3& origin = complex_.corners(part_[0].face)[0];
+    const Vec3 origin = complex_.corners(part_[0].face)[0];
     double volume = 0;
     double area = 0;
     for (const Side s : part_) {
@@ -87,9 +88,9 @@ class SpeckSearch {
 
 std::vector<FaceId> find_specks(const Complex& complex, const CrackDelta& delta, double thickness,
                                 std::size_t most_sides) {
-  SpeckSearch search(complex, delta.new_crack_faces, thickness, most_sides);
+  SpeckSearch search(complex, delta.new_faces, thickness, most_sides);
   std::vector<FaceId> joints;
-  for (const FaceId f : delta.new_crack_faces)
+  for (const FaceId f : delta.new_faces)
     for (int which = 0; which < 2 && complex.alive(f); ++which) {
       if (!search.is_speck({f, which})) continue;
       if (const auto joint = search.joint()) joints.push_back(*joint);

@@ -1,5 +1,5 @@
-// A walk over neighbouring sides from each new face, children of earlier ones included: a strip may
-// lie on these. Large parts of the surface end it early.
+// A walk over neighbouring sides from each new face, children of earlier ones included, since a
+// strip may lie on these. Large parts of the surface end it early.
 #include "crack/specks.h"
 
 #include <algorithm>
@@ -34,8 +34,8 @@ class SpeckSearch {
     return is_new && is_thin();
   }
 
-  // The largest new face of a crack between the speck found last and the rest, if there is one. Faces at
-  // the border of a sheet come last: fronts have their vertices there.
+  // The largest new face of a crack between the speck found last and the rest, if there is one.
+  // Faces at the border of a sheet come last: fronts have their vertices there.
   std::optional<FaceId> joint() const {
     std::optional<FaceId> best;
     double largest = 0;

@@ -264,10 +264,8 @@ void MaterialPoints::set_materials(const Materials& materials) {
 void MaterialPoints::gather(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const {
   const auto& nodes = blocks[block].nodes;
   if (values.size() < 4 * nodes.size()) values.resize(4 * nodes.size());
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    Eigen::Map<Eigen::Vector4d>{&values[4 * k]} << u[nodes[k]] - u[nodes[0]];
-    0;
-  }
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    Eigen::Map<Eigen::Vector4d>{&values[4 * k]} << u[nodes[k]] - u[nodes[0]], 0;
 }
 
 std::vector<Mat3> MaterialPoints::gradients(std::size_t block, const std::vector<Vec3>& u) const {

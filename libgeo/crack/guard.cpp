@@ -53,12 +53,6 @@ struct Plane {
   }
 };
 
-double height(const std::array<Vec3, 3>& t) {
-  const double longest =
-      std::max({(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
-  return (t[1] - t[0]).cross(t[2] - t[0]).norm() / std::sqrt(longest);
-}
-
 // The tests of one edit, on faces prepared once.
 class Inspection {
  public:
@@ -99,7 +93,7 @@ class Inspection {
         const int turn = orient2d(c[0], c[1], c[2], axis);
         if (turn == 0) return {"rounding would leave a face without area", {i}};
         if (turn != expected) return {"rounding would turn a face over", {i}};
-        if (clearance_ > 0 && faces_[i].rounded && faces_[i].cracked && height(c) < clearance_)
+        if (clearance_ > 0 && faces_[i].rounded && faces_[i].cracked && height_of(c) < clearance_)
           return {"rounding would leave a face that is too thin", {i}};
       }
     }

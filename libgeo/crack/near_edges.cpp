@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "crack/guard.h"
+#include "geometry/coordinate_order.h"
 #include "geometry/distance.h"
 
 namespace geo::crack {
@@ -21,12 +22,8 @@ constexpr std::size_t most_places_per_triangle = 2;
 // it is long between them.
 constexpr double places_apart = 3;
 
-// Coordinates order vertices: ids of a complex that was read back are others.
-bool is_before(const Vec3& p, const Vec3& q) {
-  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-}
-
-// An edge of K, from the end that is before the other.
+// An edge of K, from the end that is before the other by coordinates: ids of a complex that was
+// read back are others.
 struct Edge {
   VertexId a, b;
   Vec3 from, to;

@@ -9,6 +9,7 @@
 
 #include "crack/index_map.h"
 #include "crack/points.h"
+#include "geometry/coordinate_order.h"
 #include "geometry/predicates.h"
 
 namespace geo {
@@ -128,10 +129,8 @@ class Snapper {
           if (std::abs(n.dot(q - p0)) <= limit && Box3{q, q}.meets(box)) vertices.push_back(v);
         }
     }
-    std::sort(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) {
-      const Vec3 &p = complex_.point(a), &q = complex_.point(b);
-      return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-    });
+    std::sort(vertices.begin(), vertices.end(),
+              [&](VertexId a, VertexId b) { return is_before(complex_.point(a), complex_.point(b)); });
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
   }

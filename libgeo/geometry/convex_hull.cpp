@@ -31,13 +31,9 @@ class Hull {
  public:
   Hull(std::span<const Vec3> points, const Triangle& base, std::uint32_t top, Assignment assignment)
       : points_(points), assignment_(assignment) {
-    Vec3 lo = points[0];
-    Vec3 hi = points[0];
-    for (const Vec3& p : points) {
-      lo = lo.cwiseMin(p);
-      hi = hi.cwiseMax(p);
-    }
-    diameter_ = (hi - lo).norm();
+    Box3 box;
+    for (const Vec3& p : points) box.add(p);
+    diameter_ = box.diagonal();
     const auto& [a, b, c] = base;  // counter-clockwise from outside: the top is behind it
     std::vector<std::uint32_t> all(points.size());
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;

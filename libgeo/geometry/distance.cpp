@@ -36,6 +36,11 @@ Ball bounding_ball(const std::array<Vec3, 3>& t) {
                                         (t[2] - centroid).squaredNorm()}))};
 }
 
+double height_of(const std::array<Vec3, 3>& t) {
+  const double longest = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
+  return longest > 0 ? (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest : 0;
+}
+
 double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   const Vec3 u = q - p, v = s - r, w = p - r;
   const double uu = u.dot(u), vv = v.dot(v), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);

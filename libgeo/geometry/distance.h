@@ -26,6 +26,9 @@ struct Ball {
 /// The smallest ball about the centroid of a triangle that contains it.
 Ball bounding_ball(const std::array<Vec3, 3>& triangle);
 
+/// The height of a triangle over its longest side; 0 for one point.
+double height_of(const std::array<Vec3, 3>& triangle);
+
 /// The distance between segments pq and rs, either of which may be a point (Ericson, § 5.1.9).
 double distance_between_segments(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s);
 

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/coordinate_order.h"
+
 namespace geo {
 namespace {
 
@@ -21,10 +23,7 @@ bool same(const Vec3& a, const Vec3& b) { return a == b; }
 
 // The segment that a degenerate triangle is: the extreme ones of collinear points a, b, c.
 std::pair<Vec3, Vec3> as_segment(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto less = [](const Vec3& p, const Vec3& q) {
-    return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-  };
-  return {std::min({a, b, c}, less), std::max({a, b, c}, less)};
+  return {std::min({a, b, c}, is_before), std::max({a, b, c}, is_before)};
 }
 
 bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {

@@ -45,13 +45,6 @@ double time_at(const MovedBody& moved, double fraction) {
   return fraction == 1 ? moved.end : moved.begin + fraction * (moved.end - moved.begin);
 }
 
-// The height of a triangle over its longest side.
-double height(const std::array<Vec3, 3>& t) {
-  double longest = 0;
-  for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (t[(k + 1) % 3] - t[k]).norm());
-  return longest > 0 ? (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest : 0;
-}
-
 // The distance of x from what segment k of a front sweeps.
 double distance_from_strip(const Vec3& x, std::span<const FrontState::Point> points, std::span<const Vec3> to,
                            std::size_t k) {
@@ -215,14 +208,14 @@ double sheet_turning(const Complex& surface, std::span<const FaceId> faces, doub
   for (const FaceId f : faces) {
     if (!surface.alive(f)) continue;
     const auto t = surface.corners(f);
-    if (height(t) < lowest) continue;
+    if (height_of(t) < lowest) continue;
     const Vec3 n = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
     for (std::size_t k = 0; k < 3; ++k) {
       const VertexId a = surface.face(f).v[k], b = surface.face(f).v[(k + 1) % 3];
       for (const FaceId g : surface.faces_around(a, b)) {
         if (g == f || surface.face(g).crack != surface.face(f).crack) continue;
         const auto s = surface.corners(g);
-        if (height(s) < lowest) continue;
+        if (height_of(s) < lowest) continue;
         const Vec3 m = (s[1] - s[0]).cross(s[2] - s[0]).normalized() * (has_in_order(surface, g, b, a) ? 1 : -1);
         largest = std::max(largest, std::acos(std::clamp(n.dot(m), -1.0, 1.0)) * 180 / std::numbers::pi);
       }

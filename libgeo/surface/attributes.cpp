@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "geometry/coordinate_order.h"
 #include "kerf/error.h"
 
 namespace geo {
@@ -19,10 +20,6 @@ struct Location {
   std::array<int, 3> corner{};
   std::array<double, 3> weight{1, 0, 0};
 };
-
-bool before(const Vec3& p, const Vec3& q) {
-  return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
-}
 
 Location locate(const std::array<Vec3, 3>& t, const Vec3& p) {
   for (int k = 0; k < 3; ++k)
@@ -36,7 +33,7 @@ Location locate(const std::array<Vec3, 3>& t, const Vec3& p) {
   Location on_edge{0, {}, {}};
   for (int k = 0; k < 3; ++k) {
     int a = k, b = (k + 1) % 3;
-    if (before(t[b], t[a])) std::swap(a, b);
+    if (is_before(t[b], t[a])) std::swap(a, b);
     const Vec3 e = t[b] - t[a];
     if (e.squaredNorm() > (t[(longest + 1) % 3] - t[longest]).squaredNorm()) longest = k;
     const double s = std::clamp(e.dot(p - t[a]) / e.squaredNorm(), 0.0, 1.0);

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "cases.h"
+#include "geometry/distance.h"
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/mesh.h"
@@ -43,15 +44,10 @@ Case random_case(std::uint64_t seed) {
   return c;
 }
 
-double height(const std::array<Vec3, 3>& t) {
-  const double longest = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
-  return (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest;
-}
-
 double lowest_face(const Complex& k) {
   double lowest = 1;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
-    if (k.alive(FaceId(f))) lowest = std::min(lowest, height(k.corners(FaceId(f))));
+    if (k.alive(FaceId(f))) lowest = std::min(lowest, height_of(k.corners(FaceId(f))));
   return lowest;
 }
 

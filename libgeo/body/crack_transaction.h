@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -17,7 +18,8 @@ using StepVeto = std::function<void(const Complex& grown, const CrackDelta& crac
 
 /// A step of split() in kerf/body.h. While it is open, the complex has the crack and no other part
 /// of the body does. commit() updates the others. Where it has not, the destructor takes the crack
-/// back: the complex is as before. One transaction of a body at a time; the body outlives it.
+/// back: the complex is as before. It may be moved: what it moves to has the step. One transaction
+/// of a body at a time; the body outlives it.
 class CrackTransaction {
  public:
   /// Steps 1 to 3 of split(): grows the crack in the complex, and fills the body's cache where it
@@ -25,13 +27,6 @@ class CrackTransaction {
   /// to until the commit.
   CrackTransaction(Body& body, const FrontState& front, std::span<const Vec3> next, const CrackOptions& options,
                    SplitStats* stats);
-  /// Takes the step of `other`, which is closed then.
-  CrackTransaction(CrackTransaction&& other) noexcept;
-  /// Likewise; takes its own crack back first unless it is committed.
-  CrackTransaction& operator=(CrackTransaction&& other) noexcept;
-  /// Takes the crack back unless it is committed.
-  ~CrackTransaction();
-
   /// Finds what commit() needs of the surface, now: it costs as much as a veto, and may run beside
   /// other work that reads the body. Called by commit() where it was not before.
   void prepare();
@@ -40,11 +35,15 @@ class CrackTransaction {
   BodyDelta commit(FrontState& front, const StepVeto& veto = {});
 
  private:
-  void roll_back() noexcept;
+  struct TakeBack {
+    /// Reverts the last edit.
+    void operator()(Complex* grown) const { grown->undo(); }
+  };
 
-  Body* body_;        // none: closed
+  Body* body_;
   FrontState front_;  // after the step
   CrackDelta crack_;
+  std::unique_ptr<Complex, TakeBack> open_;  // the body's, while it has a crack that is not committed
   std::optional<ClosestVertices> closest_;
   SplitStats* stats_;
 };

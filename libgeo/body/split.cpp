@@ -7,7 +7,6 @@
 #include <array>
 #include <chrono>
 #include <set>
-#include <utility>
 
 #include "body/binding.h"
 #include "body/connectivity.h"
@@ -162,31 +161,7 @@ CrackTransaction::CrackTransaction(Body& body, const FrontState& front, std::spa
     : body_(&body), front_(front), stats_(stats) {
   prepare_cache(body);
   crack_ = advance(body.surface, front_, next, options, stats ? &stats->crack : nullptr);
-}
-
-CrackTransaction::CrackTransaction(CrackTransaction&& other) noexcept
-    : body_(std::exchange(other.body_, nullptr)),
-      front_(std::move(other.front_)),
-      crack_(std::move(other.crack_)),
-      closest_(std::move(other.closest_)),
-      stats_(other.stats_) {}
-
-CrackTransaction& CrackTransaction::operator=(CrackTransaction&& other) noexcept {
-  if (this == &other) return *this;
-  roll_back();
-  body_ = std::exchange(other.body_, nullptr);
-  front_ = std::move(other.front_);
-  crack_ = std::move(other.crack_);
-  closest_ = std::move(other.closest_);
-  stats_ = other.stats_;
-  return *this;
-}
-
-CrackTransaction::~CrackTransaction() { roll_back(); }
-
-void CrackTransaction::roll_back() noexcept {
-  if (body_ && !crack_.empty()) body_->surface.undo();
-  body_ = nullptr;
+  if (!crack_.empty()) open_.reset(&body.surface);
 }
 
 void CrackTransaction::prepare() {
@@ -204,9 +179,9 @@ BodyDelta CrackTransaction::commit(FrontState& front, const StepVeto& veto) {
   // Both read the body, and the veto decides whether it changes.
   parallel_invoke([&] { prepare(); }, ask);
   if (stats_) stats_->binding_seconds += std::max(0.0, seconds_since(clock) - veto_seconds);
-  Body& body = *std::exchange(body_, nullptr);
+  open_.release();
   front = std::move(front_);
-  return update_after_crack(body, std::move(crack_), std::move(*closest_), stats_);
+  return update_after_crack(*body_, std::move(crack_), std::move(*closest_), stats_);
 }
 
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,

@@ -166,9 +166,9 @@ struct Step {
 };
 
 // Snaps the strip to vertices of K. To snap it to edges, divides them where the strip passes, and
-// snaps to the new vertices. A strip that snaps has new edges, which may be near others. Adds what
-// it changes in K to `sum`; returns the number of vertices snapped to.
-std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, DeltaSum& sum) {
+// snaps to the new vertices. A strip that snaps has new edges, which may be near others. Appends
+// what it changes in K to `deltas`; returns the number of vertices snapped to.
+std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, std::vector<CrackDelta>& deltas) {
   std::size_t count = snap_to_vertices(strip, complex, snapping.reach);
   if (snapping.to == Snapping::To::vertices) return count;
   // A round divides edges near those that the last one has made: these are few, and shorter.
@@ -176,30 +176,35 @@ std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, Delta
   for (int round = 0; round < most_rounds; ++round) {
     const ComplexEdit edit = crack::divide_near_edges(complex, strip, snapping.reach);
     if (edit.empty()) break;
-    sum.add(complex.apply(edit));
+    deltas.push_back(complex.apply(edit));
     count += snap_to_vertices(strip, complex, snapping.reach);
   }
   return count;
 }
 
 // Joins the specks that a step has cut off to what is beside them: they lose a face of the crack.
-// Adds the changes to `sum`; returns whether there are any. Throws GeometryError where specks are
-// refused.
-bool join_specks(Complex& complex, const CrackDelta& delta, const Snapping& snapping, DeltaSum& sum) {
-  if (!(snapping.thickness > 0)) return false;
+// `deltas`: of the step so far, the insertion last; appends to them. Throws GeometryError where
+// specks are refused.
+void join_specks(Complex& complex, const Snapping& snapping, std::vector<CrackDelta>& deltas) {
+  if (!(snapping.thickness > 0)) return;
+  const std::size_t insertion = deltas.size() - 1;
   // Two specks that lie on each other are one after the first round.
   constexpr int most_rounds = 4;
-  bool any = false;
   for (int round = 0; round < most_rounds; ++round) {
-    const std::vector<FaceId> joints = crack::find_specks(complex, delta, snapping.thickness);
-    if (joints.empty()) break;
-    if (snapping.specks == Snapping::Specks::refuse) throw GeometryError("a speck would come off");
     ComplexEdit edit;
-    edit.removed_faces = joints;
-    sum.add(complex.apply(edit));
-    any = true;
+    edit.removed_faces = crack::find_specks(complex, deltas[insertion], snapping.thickness);
+    if (edit.empty()) return;
+    if (snapping.specks == Snapping::Specks::refuse) throw GeometryError("a speck would come off");
+    deltas.push_back(complex.apply(edit));
   }
-  return any;
+}
+
+// The changes of consecutive edits, at least one, as those of one.
+CrackDelta joined(std::vector<CrackDelta> deltas) {
+  if (deltas.size() == 1) return std::move(deltas[0]);
+  DeltaSum sum;
+  for (const CrackDelta& delta : deltas) sum.add(delta);
+  return sum.sum();
 }
 
 // One attempt. Throws GeometryError, K unchanged, when the guard refuses it.
@@ -208,18 +213,17 @@ Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>
   Stopwatch watch;
   Step result{{}, front};
   Strip strip = sweep(front, next);
-  DeltaSum sum;
+  std::vector<CrackDelta> deltas;
   Complex::EditGroup edits(complex);
-  stats.snapped += snap(strip, complex, snapping, sum);
+  stats.snapped += snap(strip, complex, snapping, deltas);
   stats.near_seconds += watch.lap();
   crack::Arrangement arrangement(complex, strip);
   std::vector<VertexId> vertex;
-  const CrackDelta delta = crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats);
-  if (!sum.empty() && delta.empty()) throw GeometryError("edges are divided where nothing is cut");
-  const bool is_one_edit = sum.empty();
-  if (!is_one_edit || snapping.thickness > 0) sum.add(delta);
-  const bool has_joined = join_specks(complex, delta, snapping, sum);
-  result.delta = is_one_edit && !has_joined ? delta : sum.sum();
+  const bool is_divided = !deltas.empty();
+  deltas.push_back(crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats));
+  if (is_divided && deltas.back().empty()) throw GeometryError("edges are divided where nothing is cut");
+  join_specks(complex, snapping, deltas);
+  result.delta = joined(std::move(deltas));
   watch.lap();
   advance_contacts(result.front, complex, strip, arrangement, vertex);
   stats.stitch_seconds += watch.lap();

@@ -14,24 +14,23 @@ std::uint64_t key_of(Side s) { return 2 * std::uint64_t(s.face.value) + static_c
 class SpeckSearch {
  public:
   SpeckSearch(const Complex& complex, const std::vector<FaceId>& fresh, double thickness, std::size_t most_sides)
-      : complex_(complex), fresh_(fresh.begin(), fresh.end()), thickness_(thickness), most_sides_(most_sides) {}
+      : complex_(complex), fresh_(fresh), thickness_(thickness), most_sides_(most_sides) {}
 
   // Whether the part of the surface with this side is a speck that was not visited before.
   bool is_speck(Side start) {
     if (!complex_.has(start) || !visited_.insert(key_of(start)).second) return false;
     part_.assign(1, start);
-    bool is_new = true;  // else it is larger than most_sides: an earlier walk gave up there
     for (std::size_t i = 0; i < part_.size(); ++i) {
       if (part_.size() > most_sides_) return false;
       for (int k = 0; k < 3; ++k) {
         const Side next = complex_.neighbor(part_[i], k);
         if (visited_.insert(key_of(next)).second)
           part_.push_back(next);
-        else
-          is_new = is_new && has(next);
+        else if (!has(next))
+          return false;  // larger than most_sides: an earlier walk gave up there
       }
     }
-    return is_new && is_thin();
+    return is_thin();
   }
 
   // The largest new face of a crack between the speck found last and the rest, if there is one.
@@ -41,7 +40,9 @@ class SpeckSearch {
     double largest = 0;
     bool best_is_inner = false;
     for (const Side s : part_) {
-      if (complex_.face(s.face).crack == 0 || !fresh_.contains(s.face) || has({s.face, 1 - s.which})) continue;
+      if (complex_.face(s.face).crack == 0 || !std::binary_search(fresh_.begin(), fresh_.end(), s.face) ||
+          has({s.face, 1 - s.which}))
+        continue;
       const bool is_inner = !has_border(s.face);
       const auto [a, b, c] = complex_.corners(s.face);
       const double area = (b - a).cross(c - a).norm();
@@ -77,7 +78,7 @@ class SpeckSearch {
   }
 
   const Complex& complex_;
-  std::unordered_set<FaceId> fresh_;
+  const std::vector<FaceId>& fresh_;  // ascending
   double thickness_;
   std::size_t most_sides_;
   std::unordered_set<std::uint64_t> visited_;

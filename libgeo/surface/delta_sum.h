@@ -14,8 +14,6 @@ class DeltaSum {
  public:
   /// Adds the delta that follows those added so far. Cost follows the delta.
   void add(const CrackDelta& delta);
-  /// Whether the sum changes no face.
-  bool empty() const { return removed_faces_.empty() && new_faces_.empty(); }
   /// The sum of all deltas.
   CrackDelta sum() const;
 

@@ -83,20 +83,33 @@ class SurfaceEmbedder {
     return {};
   }
 
-  // A side that remains keeps the positions of its corners. The lowest one at a new vertex decides.
+  // A side that remains keeps the positions of its corners. New faces may join vertices of one site
+  // that had positions of their own: cracks that only touched there. Their mean is the new position.
   void place_on_remaining_sides() {
-    for (const auto v : in_.crack.new_surface_vertices) {
-      if (!k_.alive(v)) continue;
-      for (const FaceId f : k_.faces_at(k_.site(v)))
-        for (int which = 0; which < 2; ++which)
-          for (int c = 0; c < 3; ++c) {
-            if (placed_[v.index()] || !k_.has({f, which}) || k_.surface_vertex({f, which}, c) != v) continue;
-            if (const auto at = old_side({f, which})) {
-              const auto w = (*at)[static_cast<std::size_t>(c)];
-              place(v, in_.positions[w], SurfaceVertexId(w));
-            }
-          }
-    }
+    for (const auto v : in_.crack.new_surface_vertices)
+      if (k_.alive(v)) place_on_sides_at(v);
+    for (const auto v : in_.crack.touched_surface_vertices)
+      if (k_.alive(v)) place_on_sides_at(v);
+  }
+
+  void place_on_sides_at(SurfaceVertexId v) {
+    std::vector<SurfaceVertexId> old;  // vertices of the corners of remaining sides
+    for (const FaceId f : k_.faces_at(k_.site(v)))
+      for (int which = 0; which < 2; ++which)
+        for (int c = 0; c < 3; ++c) {
+          if (!k_.has({f, which}) || k_.surface_vertex({f, which}, c) != v) continue;
+          if (const auto at = old_side({f, which})) old.push_back(SurfaceVertexId((*at)[static_cast<std::size_t>(c)]));
+        }
+    std::sort(old.begin(), old.end());
+    old.erase(std::unique(old.begin(), old.end()), old.end());
+    if (old.empty()) return;
+    const auto position = [&](SurfaceVertexId w) { return in_.positions[w.index()]; };
+    if (std::all_of(old.begin(), old.end(), [&](auto w) { return position(w) == position(old[0]); }))
+      return place(v, position(old[0]), old[0]);
+    Vec3 sum = Vec3::Zero();
+    for (const auto w : old) sum += position(w);
+    place(v, sum / double(old.size()), old[0]);
+    joined_.push_back(v);
   }
 
   // A part of a divided face gives its new corners their place in the face; the lowest face with
@@ -311,6 +324,8 @@ class SurfaceEmbedder {
         for (auto [t, end] = s.triangles_of(f); t < end; ++t) in[t] = 1;
     };
     mark(in_.crack.new_faces, marked);
+    for (const auto v : joined_)
+      for (const FaceId f : k_.faces_at(k_.site(v))) mark({f}, marked);
     mark(in_.crack.new_crack_faces, fresh);
     const auto rest = [&](std::uint32_t v) { return k_.point(VertexId(s.site[v])); };
     const auto gradient = [&](std::uint32_t v) {
@@ -356,6 +371,7 @@ class SurfaceEmbedder {
   EmbeddedSurface result_;
   std::vector<SurfaceVertexId> reference_;  // per vertex, as in place()
   std::vector<std::uint8_t> placed_;        // per vertex
+  std::vector<SurfaceVertexId> joined_;     // of several that had positions of their own
 };
 
 }  // namespace

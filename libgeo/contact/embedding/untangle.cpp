@@ -1,13 +1,16 @@
 // Projection of separation constraints, Gauss–Seidel (position-based dynamics). The axis is the
-// difference of closest points in the material, mapped by F⁻ᵀ; crossings are then searched again.
+// difference of closest points in the material, mapped by F⁻ᵀ, or a normal of features that
+// separate the two there: the one that moves them least. Crossings are then searched again.
 #include "contact/embedding/untangle.h"
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
 
 #include "contact/detection/simplex.h"
+#include "geometry/distance.h"
 
 namespace geo {
 namespace {
@@ -38,30 +41,113 @@ bool project(const SeparationConstraint& c, std::vector<Vec3>& at, std::vector<s
   return true;
 }
 
+// The corners of two simplices.
+struct SimplexPair {
+  int a_size, b_size;
+  std::array<Vec3, 3> a{}, b{};
+
+  // min n · a − max n · b: how far apart they lie along a unit vector n.
+  double separation(const Vec3& n) const {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (int k = 0; k < a_size; ++k) least = std::min(least, n.dot(a[std::size_t(k)]));
+    for (int k = 0; k < b_size; ++k) most = std::max(most, n.dot(b[std::size_t(k)]));
+    return least - most;
+  }
+};
+
+// The axes of the separating-axis theorem: normals of triangles, products of edges; not unit
+// vectors. Equal places in the list stand for the same features at any positions.
+std::vector<Vec3> feature_axes(const SimplexPair& at) {
+  const auto edges = [](int size, const std::array<Vec3, 3>& p) {
+    std::vector<Vec3> result;
+    if (size > 1) result.push_back(p[1] - p[0]);
+    if (size > 2) result.insert(result.end(), {p[2] - p[1], p[0] - p[2]});
+    return result;
+  };
+  const std::vector<Vec3> of_a = edges(at.a_size, at.a), of_b = edges(at.b_size, at.b);
+  std::vector<Vec3> axes;
+  if (at.a_size == 3) axes.push_back(of_a[0].cross(of_a[1]));
+  if (at.b_size == 3) axes.push_back(of_b[0].cross(of_b[1]));
+  for (const Vec3& p : of_a)
+    for (const Vec3& q : of_b) axes.push_back(p.cross(q));
+  return axes;
+}
+
+// A direction from b to a that separates them at the reference, and how far apart they lie along it
+// now. Zero: none is known.
+struct SeparatingAxis {
+  Vec3 normal = Vec3::Zero();
+  double separation = -std::numeric_limits<double>::infinity();
+
+  // Takes another direction if it has to move the simplices less.
+  void offer(const Vec3& direction, const SimplexPair& now) {
+    const Vec3 unit = direction.stableNormalized();
+    if (!(unit.norm() > 0) || !unit.allFinite()) return;
+    const double apart = now.separation(unit);
+    if (apart <= separation) return;
+    normal = unit;
+    separation = apart;
+  }
+};
+
+// Offers the axes of features that separate the simplices at the reference. Where both have a
+// corner at one place there, the separation is 0 to the bit.
+void offer_features(const SimplexPair& reference, const SimplexPair& now, SeparatingAxis& axis) {
+  const std::vector<Vec3> before = feature_axes(reference), after = feature_axes(now);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double ahead = reference.separation(before[i]), behind = reference.separation(-before[i]);
+    if (ahead >= 0 && behind < 0) axis.offer(after[i], now);
+    if (behind >= 0 && ahead < 0) axis.offer(-after[i], now);
+  }
+}
+
+// The height of a triangle, the length of an edge; infinite for a point.
+double least_extent(int size, const std::array<Vec3, 3>& p) {
+  if (size == 3) return height_of(p);
+  return size == 2 ? (p[1] - p[0]).norm() : std::numeric_limits<double>::infinity();
+}
+
+// A quarter of the distance at the reference, at most the gap: less than the material allows. Of
+// the extents where they touch at the reference.
+double wanted_separation(const SimplexPair& reference, double distance, double gap) {
+  const double room =
+      distance > 0 ? distance
+                   : std::min(least_extent(reference.a_size, reference.a), least_extent(reference.b_size, reference.b));
+  return std::min(gap, 0.25 * room);
+}
+
 // Appends the constraints of a pair of triangles of representatives. `start`: the given positions.
 // `both_old`: neither triangle is fresh.
 void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle& t, bool both_old,
-                     const std::vector<Vec3>& start, std::vector<SeparationConstraint>& out) {
+                     const std::vector<Vec3>& start, const std::vector<Vec3>& positions,
+                     std::vector<SeparationConstraint>& out) {
   std::pair<Simplex, Simplex> pairs[2];
   const int count = disjoint_subsimplices(s, t, pairs);
   for (int i = 0; i < count; ++i) {
     const auto& [a, b] = pairs[i];
-    const auto reference = [&](std::uint32_t v) { return both_old ? start[v] : in.rest(v); };
-    Vec3 p[3], q[3];
-    for (int k = 0; k < a.size; ++k) p[k] = reference(a.v[k]);
-    for (int k = 0; k < b.size; ++k) q[k] = reference(b.v[k]);
-    const Vec3 difference = closest_points(p, a.size, q, b.size).difference;
-    Vec3 normal = difference;
-    if (!both_old) {
+    const auto pair_at = [&](const auto& position) {
+      SimplexPair at{.a_size = a.size, .b_size = b.size};
+      for (int k = 0; k < a.size; ++k) at.a[std::size_t(k)] = position(a.v[k]);
+      for (int k = 0; k < b.size; ++k) at.b[std::size_t(k)] = position(b.v[k]);
+      return at;
+    };
+    const SimplexPair reference = pair_at([&](std::uint32_t v) { return both_old ? start[v] : in.rest(v); }),
+                      now = pair_at([&](std::uint32_t v) { return positions[v]; });
+    const Vec3 difference = closest_points(reference.a.data(), a.size, reference.b.data(), b.size).difference;
+    SeparatingAxis axis;
+    if (both_old) {
+      axis.offer(difference, now);
+    } else {
       // Normals transform by the inverse transpose of the deformation gradient.
       Mat3 mean = Mat3::Zero();
       for (const Simplex& simplex : {a, b})
         for (int k = 0; k < simplex.size; ++k) mean += in.gradient(simplex.v[k]) / (a.size + b.size);
-      normal = mean.inverse().transpose() * difference;
+      axis.offer(mean.inverse().transpose() * difference, now);
     }
-    if (normal.norm() > 0 && normal.allFinite())
-      // A quarter of the distance at the reference, at most the gap: less than the material allows.
-      out.push_back({a, b, normal.normalized(), std::min(in.gap, 0.25 * difference.norm())});
+    // Along a direction that noise has turned, large triangles overlap by far more than they cross.
+    offer_features(reference, now, axis);
+    if (axis.normal.isZero(0)) continue;
+    out.push_back({a, b, axis.normal, wanted_separation(reference, difference.norm(), in.gap)});
   }
 }
 
@@ -96,7 +182,7 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
     for (const auto& pair : crossings)
       if (known.insert(pair).second)
         add_constraints(in, represented(pair.first), represented(pair.second),
-                        !in.fresh[pair.first] && !in.fresh[pair.second], start, constraints);
+                        !in.fresh[pair.first] && !in.fresh[pair.second], start, positions, constraints);
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       bool any = false;
       for (const SeparationConstraint& c : constraints) any |= project(c, positions, moved);

@@ -27,12 +27,17 @@ class CrackTransaction {
   /// to until the commit.
   CrackTransaction(Body& body, const FrontState& front, std::span<const Vec3> next, const CrackOptions& options,
                    SplitStats* stats);
+  /// The same for an edit of another kind: grow(complex) makes it and returns its changes, or throws
+  /// and leaves the complex as it was.
+  CrackTransaction(Body& body, const std::function<CrackDelta(Complex&)>& grow, SplitStats* stats);
   /// Finds what commit() needs of the surface, now: it costs as much as a veto, and may run beside
   /// other work that reads the body. Called by commit() where it was not before.
   void prepare();
   /// Steps 4 to 7 of split(). `veto`, where not empty, is called before; if it throws, body and
   /// front are as before the transaction. `front` becomes that after the step. Call once.
   BodyDelta commit(FrontState& front, const StepVeto& veto = {});
+  /// The same without a front.
+  BodyDelta commit(const StepVeto& veto = {});
 
  private:
   struct TakeBack {

@@ -164,11 +164,24 @@ CrackTransaction::CrackTransaction(Body& body, const FrontState& front, std::spa
   if (!crack_.empty()) open_.reset(&body.surface);
 }
 
+CrackTransaction::CrackTransaction(Body& body, const std::function<CrackDelta(Complex&)>& grow, SplitStats* stats)
+    : body_(&body), stats_(stats) {
+  prepare_cache(body);
+  crack_ = grow(body.surface);
+  if (!crack_.empty()) open_.reset(&body.surface);
+}
+
 void CrackTransaction::prepare() {
   if (!closest_) closest_ = closest_after(*body_, crack_);
 }
 
 BodyDelta CrackTransaction::commit(FrontState& front, const StepVeto& veto) {
+  BodyDelta delta = commit(veto);
+  front = std::move(front_);
+  return delta;
+}
+
+BodyDelta CrackTransaction::commit(const StepVeto& veto) {
   auto clock = std::chrono::steady_clock::now();
   double veto_seconds = 0;
   const auto ask = [&] {
@@ -180,7 +193,6 @@ BodyDelta CrackTransaction::commit(FrontState& front, const StepVeto& veto) {
   parallel_invoke([&] { prepare(); }, ask);
   if (stats_) stats_->binding_seconds += std::max(0.0, seconds_since(clock) - veto_seconds);
   open_.release();
-  front = std::move(front_);
   return update_after_crack(*body_, std::move(crack_), std::move(*closest_), stats_);
 }
 

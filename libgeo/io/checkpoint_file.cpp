@@ -21,6 +21,7 @@ void counts(Work& w, const Each& each) {
   each("refused", w.refused);
   each("cracks_begun", w.fracture.begun);
   each("cracks_divided", w.fracture.divided);
+  each("bonds_broken", w.fracture.broken);
   each("triangles_cut", w.split.crack.triangles_cut);
   each("edges_cut", w.split.edges_cut);
   each("touching", w.contact.touching);
@@ -98,6 +99,55 @@ std::vector<Mat3> read_matrices(const KerfFile& file, const std::string& section
   return matrices;
 }
 
+// The numbers of a bond that its faces do not give: cells, body, and whether it is broken; strength
+// and toughness.
+struct GluedNumbers {
+  std::vector<std::uint32_t> faces, bond_of_face, cells;
+  std::vector<double> limits;
+
+  explicit GluedNumbers(const GluedBonds& glued) {
+    for (std::uint32_t b = 0; b < glued.bonds.size(); ++b) {
+      const GluedBond& bond = glued.bonds[b];
+      for (const Triangle& face : bond.faces) {
+        faces.insert(faces.end(), face.begin(), face.end());
+        bond_of_face.push_back(b);
+      }
+      cells.insert(cells.end(), {bond.a, bond.b, bond.body, std::uint32_t(bond.broken)});
+      limits.insert(limits.end(), {bond.strength, bond.toughness});
+    }
+  }
+};
+
+GluedBonds read_glued(const KerfFile& file) {
+  GluedBonds glued;
+  if (file.sections().count("run/glue_points") == 0) return glued;
+  glued.points = read_points(file, "run/glue_points");
+  const auto faces = file.read<std::uint32_t>("run/glue_faces", 3), of = file.read<std::uint32_t>("run/glue_bonds");
+  const auto cells = file.read<std::uint32_t>("run/glue_cells", 4);
+  const auto limits = file.read<double>("run/glue_limits", 2);
+  glued.bonds.resize(cells.size() / 4);
+  if (faces.size() != 3 * of.size() || limits.size() != 2 * glued.bonds.size())
+    file.fail("the sections of glued bonds have different lengths");
+  for (std::size_t f = 0; f < of.size(); ++f) {
+    const Triangle face{faces[3 * f], faces[3 * f + 1], faces[3 * f + 2]};
+    if (of[f] >= glued.bonds.size() || *std::max_element(face.begin(), face.end()) >= glued.points.size())
+      file.fail("a glued bond has a face or a point that is not there");
+    glued.bonds[of[f]].faces.push_back(face);
+  }
+  for (std::size_t b = 0; b < glued.bonds.size(); ++b) {
+    GluedBond& bond = glued.bonds[b];
+    bond.a = cells[4 * b];
+    bond.b = cells[4 * b + 1];
+    bond.body = cells[4 * b + 2];
+    bond.broken = cells[4 * b + 3] != 0;
+    bond.strength = limits[2 * b];
+    bond.toughness = limits[2 * b + 1];
+    if (!(bond.strength > 0) || !(bond.toughness >= 0)) file.fail("a glued bond has no strength");
+    measure(bond, glued.points);
+  }
+  return glued;
+}
+
 }  // namespace
 
 void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene) {
@@ -141,6 +191,14 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
     more.push_back(kerf_array("run/acceleration", coordinates(state.motion.acceleration), 3));
   const std::vector<Vec3> plastic = columns_of(state.motion.plastic), rotation = columns_of(state.motion.rotation);
   if (!plastic.empty()) more.push_back(kerf_array("run/plastic", coordinates(plastic), 3));
+  const GluedNumbers glued(state.glued);
+  if (!state.glued.bonds.empty()) {
+    more.push_back(kerf_array("run/glue_points", coordinates(state.glued.points), 3));
+    more.push_back(kerf_array("run/glue_faces", std::span(glued.faces), 3));
+    more.push_back(kerf_array("run/glue_bonds", std::span(glued.bond_of_face)));
+    more.push_back(kerf_array("run/glue_cells", std::span(glued.cells), 4));
+    more.push_back(kerf_array("run/glue_limits", std::span<const double>(glued.limits), 2));
+  }
   if (!rotation.empty()) more.push_back(kerf_array("run/rotation", coordinates(rotation), 3));
   more.push_back(
       {"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
@@ -157,6 +215,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   state.motion.plastic = read_matrices(file, "run/plastic");
   state.motion.rotation = read_matrices(file, "run/rotation");
   state.surface = read_points(file, "run/surface");
+  state.glued = read_glued(file);
   state.body_index = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");
   const std::size_t n = c.body.nodes.size();
@@ -194,7 +253,8 @@ Checkpoint read_checkpoint(const KerfFile& file) {
       state.fracture.fronts.push_back(std::move(g));
     }
     counts(state.total, [&](const char* name, std::size_t& count) {
-      count = json_integer<std::size_t>(about.at("counts").at(name));
+      const auto& known = about.at("counts");
+      count = known.contains(name) ? json_integer<std::size_t>(known.at(name)) : 0;  // older files lack some
     });
   } catch (const nlohmann::json::exception&) {
     file.fail("section 'run/about' is malformed");

@@ -235,11 +235,14 @@ void read_score(TomlTable& t, Scene& s, Files& files) {
   const SceneBody& of = s.bodies[static_cast<std::size_t>(body)];
   const std::filesystem::path path = file;
   const std::string name = path.filename().string();
-  s.score_files.push_back({files.path(file), body});
+  std::optional<Strength> glue;
+  if (t.find("strength")) read_strength(t, glue.emplace());
+  s.score_files.push_back({files.path(file), body, glue});
   for (Front& front : parse_fronts(files.read(file), name)) {
     for (auto& step : front.steps)
       for (Vec3& p : step) p = of.place * (of.scale * p);
-    s.scores.push_back(std::move(front));
+    if (glue && !front.is_sheet()) t.fail("a front cannot be glued; give a sheet, or leave out 'strength'");
+    s.scores.push_back({std::move(front), static_cast<std::uint32_t>(body), glue});
   }
 }
 

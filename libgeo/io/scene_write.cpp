@@ -247,10 +247,11 @@ void SceneWriter::write(const Scene& s) {
   key("friction", s.contact.friction);
   key("gap", s.contact.gap);
   time(s);
-  for (const auto& [file, of] : s.score_files) {
+  for (const SceneScoreFile& score : s.score_files) {
     table("[[score]]");
-    path("file", file);
-    whole("body", static_cast<std::uint64_t>(of));
+    path("file", score.file);
+    whole("body", static_cast<std::uint64_t>(score.body));
+    if (score.glue) strength(*score.glue);
   }
   for (const Grip& g : s.grips) grip(g);
   for (const SceneObstacle& o : s.obstacles) obstacle(o);

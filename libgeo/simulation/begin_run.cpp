@@ -3,6 +3,8 @@
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/simulation.h"
+#include "score/jagged.h"
+#include "simulation/bond_breaking.h"
 #include "simulation/scene_body.h"
 
 namespace geo {
@@ -12,12 +14,29 @@ void follow_donors(const BodyDelta& delta, RunState& state) {
   for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
 }
 
-void insert_scored_sheet(const Front& sheet, std::int32_t crack, RunStart& run) {
-  TriangleMesh mesh;
-  mesh.vertices = sheet.steps[0];
-  mesh.triangles = sheet.triangles;
+// Divides the walls of a sheet so that they can follow the deformed material where they open:
+// triangles as large as cells cannot.
+void refine(TriangleMesh& walls, const Body& body) {
+  const Complex& complex = body.surface;
+  std::vector<std::array<Vec3, 3>> skin;
+  for (std::uint32_t f = 0; f < complex.face_count(); ++f)
+    if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack == 0) skin.push_back(complex.corners(FaceId(f)));
+  refine_walls(walls, TriangleBvh(skin), body.finest_spacing, body.finest_spacing);
+}
+
+void insert_scored_sheet(const SceneScore& score, std::int32_t crack, std::uint64_t seed, RunStart& run) {
+  TriangleMesh walls;
+  walls.vertices = score.front.steps[0];
+  walls.triangles = score.front.triangles;
+  if (score.glue) refine(walls, run.body);
   Complex scored = run.body.surface;
-  insert_sheet(scored, mesh, crack);
+  insert_sheet(scored, walls, crack);
+  if (score.glue) {
+    GluedBonds& glued = run.state.glued;
+    const std::size_t first = glued.bonds.size();
+    glue_crack(scored, crack, glued);
+    set_strength(glued, first, *score.glue, seed, scored.extent().diagonal(), score.body);
+  }
   follow_donors(update_body(run.body, scored), run.state);
 }
 
@@ -26,11 +45,11 @@ void prescore(const Scene& scene, RunStart& run, const Progress& progress) {
   CrackOptions options;
   options.seed = scene.seed;
   for (std::size_t s = 0; s < scene.scores.size(); ++s) {
-    const Front& front = scene.scores[s];
+    const Front& front = scene.scores[s].front;
     const std::int32_t crack = run.body.surface.crack_count() + 1;
     if (front.is_sheet()) {
       report(progress, "prescoring", s, scene.scores.size());
-      insert_scored_sheet(front, crack, run);
+      insert_scored_sheet(scene.scores[s], crack, scene.fracture.seed, run);
       continue;
     }
     FrontState state = begin_front(front.steps.at(0), front.closed, crack);

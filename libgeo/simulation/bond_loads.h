@@ -15,38 +15,50 @@ namespace geo {
 struct BondLoad {
   double normal = 0;   ///< mean across the wall; positive: tension
   double shear = 0;    ///< mean along the wall
-  double bending = 0;  ///< what bending adds to the normal traction at the edge of the wall; not negative
+  double bending = 0;  ///< what bending adds to the normal traction where it adds most; not negative
 
-  /// The traction that is compared with the strength: √(σ² + τ²), with σ the greatest tension, and
-  /// τ the shear. Under pressure, friction takes a part of the shear and tension takes none
-  /// (Camacho and Ortiz 1996).
+  /// The traction that is compared with the strength: √(σ² + τ²) for a greatest tension σ and a
+  /// shear τ. Under pressure, friction takes a part of the shear (Camacho and Ortiz 1996, with equal
+  /// weights of tension and shear). `friction`: Coulomb's coefficient.
   double effective(double friction) const;
 };
 
-/// Weights of material points for each bond. A traction is the linear field along the wall that fits
-/// P N best at the points near it: P the first Piola-Kirchhoff stress, N the wall's normal.
+/// Finds tractions on the walls of bonds. The traction on a wall is the linear field along it that
+/// fits P N best at the material points around: P the first Piola-Kirchhoff stress, N the wall's
+/// normal. So it has the force and the moment of a beam's cross-section. Valid until the solid's
+/// points change.
 class BondLoads {
  public:
-  /// Finds the material points within a node spacing of each bond that sees them.
+  /// Takes the material points near each wall that see it. The solid's points
+  /// are up to date.
   BondLoads(const Body& body, const Solid& solid, const GluedBonds& glued);
   /// The load on each bond; zero for broken ones, and where no point is near.
   std::vector<BondLoad> at(const Solid& solid, const State& state, const GluedBonds& glued) const;
 
  private:
-  struct Sample {
-    std::uint32_t point;       // index into points_
-    double mean;               // weight of the traction at the centroid
-    Vec2 slope;                // of its gradient along the wall
+  // What a point contributes to the traction at a wall's centroid, and to its gradient along the
+  // wall.
+  struct Share {
+    std::uint32_t point;  // index into points_
+    double mean;
+    Vec2 slope;
   };
   struct Wall {
-    std::vector<Sample> samples;
-    std::vector<Vec2> corners;  // of the wall about its centroid, in its plane: the hull's extremes
+    std::vector<Share> shares;
+    std::vector<Vec2> corners;  // about its centroid, in its plane
   };
   struct Point {
     std::uint32_t block, index;
   };
-  std::vector<Point> points_;  // that some bond uses, by block
-  std::vector<Wall> walls_;
+  // The nominal stress of a point, and the matrix that maps normals with their areas.
+  struct PointStress {
+    Mat3 nominal, area;
+  };
+  class Surroundings;
+  std::vector<PointStress> stresses(const Solid& solid, const State& state) const;
+
+  std::vector<Point> points_;  // that some wall uses, by block
+  std::vector<Wall> walls_;    // by bond
 };
 
 }  // namespace geo

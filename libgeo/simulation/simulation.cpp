@@ -17,6 +17,8 @@
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "simulation/blade_way.h"
+#include "simulation/bond_breaking.h"
+#include "simulation/bond_loads.h"
 #include "simulation/collisions.h"
 #include "simulation/edge_retreat.h"
 #include "simulation/edge_runs.h"
@@ -139,6 +141,8 @@ struct Simulation::Impl {
   void finish_contact(std::optional<ContactStep> contact, const std::vector<Vec3>& before, double dt,
                       FrameStats& stats);
   void fracture(double dt, FrameStats& stats);
+  void break_bonds(FrameStats& stats);
+  void open_bonds(std::span<const std::uint32_t> chosen, FrameStats& stats);
   void require_finite() const;
   double weight_energy() const;
   double time_of(int frame) const { return frame * (1 / scene.frame_rate); }
@@ -157,8 +161,10 @@ struct Simulation::Impl {
   NodeWay way;              // of this time step, while blades cut
   std::mutex points_guard;  // held by update_points()
   std::size_t crumbs = 0;
-  bool cut_since_build = false;  // of the solid
-  bool nodes_changed = false;    // since reset_environment()
+  bool cut_since_build = false;               // of the solid
+  std::optional<BondLoads> bond_loads;        // none since a cut
+  std::optional<BondBreaking> bond_breaking;  // none before the first use
+  bool nodes_changed = false;                 // since reset_environment()
 };
 
 Simulation::Impl::Impl(const Scene& scene_in, Body body_in, RunState state_in)
@@ -181,6 +187,8 @@ void Simulation::Impl::restore(Body new_body, RunState new_state) {
   solid.set_rotations(state.motion);
   obstacles = Obstacles(scene);
   environment = {};
+  bond_loads.reset();
+  bond_breaking.reset();
   wedge = {};
   pull = {};
   reset_contact();
@@ -222,6 +230,7 @@ void Simulation::Impl::apply_delta(const BodyDelta& delta, std::optional<Embeddi
   if (delta.crack.empty()) return;
   Stopwatch watch;
   cut_since_build = true;
+  bond_loads.reset();
   nodes_changed = true;
   solid.update_nodes(body, delta, state.motion);
   if (scene.fracture.on) update_points();
@@ -502,6 +511,49 @@ void Simulation::Impl::fracture(double dt, FrameStats& stats) {
   stats.fracture_seconds += watch.lap() - (others() - splitting);
 }
 
+// Opens the glued bonds that break under their loads.
+void Simulation::Impl::break_bonds(FrameStats& stats) {
+  GluedBonds& glued = state.glued;
+  if (std::all_of(glued.bonds.begin(), glued.bonds.end(), [](const GluedBond& b) { return b.broken; })) return;
+  Stopwatch watch;
+  update_points();
+  stats.mechanics_seconds += watch.lap();
+  if (!bond_loads) bond_loads.emplace(body, solid, glued);
+  if (!bond_breaking) bond_breaking.emplace(glued);
+  const auto over =
+      bond_breaking->overloaded(glued, bond_loads->at(solid, state.motion, glued), scene.contact.friction);
+  stats.fracture_seconds += watch.lap();
+  if (!over.empty()) open_bonds(over, stats);
+}
+
+// Opens bonds together; where that is refused, each half of them.
+void Simulation::Impl::open_bonds(std::span<const std::uint32_t> bonds, FrameStats& stats) {
+  const TriangleMesh sheet = sheet_of(state.glued, bonds);
+  const auto open = [&](Complex& complex) {
+    return insert_sheet(complex, sheet, unused_crack(), {}, &stats.split.crack);
+  };
+  try {
+    CrackTransaction step(body, open, &stats.split);
+    std::optional<EmbeddingPlan> plan;
+    const StepVeto check =
+        collisions ? collisions->embedding_check(body, solid, state.motion, plan, stats.contact_seconds) : StepVeto();
+    const BodyDelta delta = step.commit(check);
+    apply_delta(delta, std::move(plan), stats);
+    for (const auto b : bonds) {
+      state.glued.bonds[b].broken = true;
+      stats.fracture.broken_area += state.glued.bonds[b].area;
+    }
+    stats.fracture.broken += bonds.size();
+  } catch (const GeometryError&) {
+    if (bonds.size() == 1) {
+      ++stats.refused;
+      return;
+    }
+    open_bonds(bonds.first(bonds.size() / 2), stats);
+    open_bonds(bonds.subspan(bonds.size() / 2), stats);
+  }
+}
+
 // One time step, phase by phase.
 void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   state.time = step.begin;
@@ -538,6 +590,7 @@ void Simulation::Impl::step(const TimeStep& step, FrameStats& stats) {
   state.time = step.end;
   cut(step, std::move(first), stats);
   fracture(step.dt, stats);
+  break_bonds(stats);
 }
 
 // The work that weight would do on the way back to rest, J.

@@ -216,8 +216,8 @@ CutScene placed(const CutScene& cut, const Placement& way) {
     body.sampling.spacing *= scale;
     if (body.material) place.material(*body.material);
   }
-  for (Front& score : scene.scores)
-    for (auto& step : score.steps)
+  for (SceneScore& score : scene.scores)
+    for (auto& step : score.front.steps)
       for (Vec3& p : step) p = place.point(p);
   scene.gravity = place.vector(scene.gravity);
   scene.ground_point = place.point(scene.ground_point);

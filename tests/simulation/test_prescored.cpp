@@ -16,7 +16,7 @@ TEST_CASE("a body that a sheet has scored begins in pieces") {
   Scene scene;
   scene.bodies.resize(1);
   scene.bodies[0].sampling.spacing = 0.2;
-  scene.scores = {sheet};
+  scene.scores = {{sheet}};
   scene.gravity = {0, 0, -2};
   Simulation sim(scene, make_block({1, 1, 1}, 0.2));
   const Body& body = sim.body();

@@ -186,7 +186,7 @@ TEST_CASE("bodies with velocities and prescored fronts begin as the scene says")
       "s.toml");
   Front front{"score", false, {{{-0.3, 0.507, 1.3}, {1.3, 0.503, 1.3}}, {{-0.3, 0.511, -0.3}, {1.3, 0.509, -0.3}}}};
   Front sheet{"sheet", false, {{{2, 0.213, -1}, {4, 0.213, -1}, {3, 0.219, 2}}}, {{0, 1, 2}}};
-  scene.scores = {front, sheet};
+  scene.scores = {{front}, {sheet}};
   const PlacedModels model = place_models(scene, {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)});
   const Simulation sim(scene, model);
   const Pieces pieces = find_pieces(sim.body().surface);

@@ -54,7 +54,7 @@ std::string counts(const geo::FrameStats& stats) {
   const auto of = [](const char* name, std::size_t n) { return std::string("\"") + name + "\":" + std::to_string(n); };
   return of("steps", stats.steps) + "," + of("newton", stats.newton) + "," + of("cg", stats.cg) + "," +
          of("fronts", stats.fronts) + "," + of("cracks_begun", stats.fracture.begun + stats.fracture.divided) + "," +
-         of("refused", stats.refused) + "," + of("triangles_cut", stats.split.crack.triangles_cut) + "," +
+         of("bonds_broken", stats.fracture.broken) + "," + of("refused", stats.refused) + "," + of("triangles_cut", stats.split.crack.triangles_cut) + "," +
          of("edges_cut", stats.split.edges_cut) + "," + of("nodes_updated", stats.split.nodes_updated) + "," +
          of("nodes_added", stats.split.nodes_added) + "," + of("touching", stats.contact.touching) + "," +
          of("in_zones", stats.contact.in_zones) + "," + of("held", stats.contact.held);
@@ -69,6 +69,7 @@ std::string line_of(const FrameOutcome& o, std::size_t crossings) {
                      ",\"sheet_turning\":" + tool::number(o.stats.sheet.turning) +
                      ",\"retreating\":" + std::to_string(o.stats.sheet.retreating) +
                      ",\"crumbs\":" + std::to_string(o.stats.sheet.crumbs) +
+                     ",\"broken_area\":" + tool::number(o.stats.fracture.broken_area) +
                      ",\"energy\":" + tool::number(o.stats.energy) + ",\"kinetic\":" + tool::number(o.stats.kinetic) +
                      ",\"weight\":" + tool::number(o.stats.weight) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < o.stats.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.stats.blade_force[b]);

@@ -160,13 +160,27 @@ struct SceneObstacle {
   Pose pose(double time) const;
 };
 
+/// A file with scores.
+struct SceneScoreFile {
+  std::string file;                   ///< path
+  int body = 0;                       ///< in whose model's coordinates it is
+  std::optional<Strength> glue = {};  ///< of all its sheets
+};
+
+/// A crack made before time 0, or walls that are glued and become cracks where they break.
+struct SceneScore {
+  Front front;                        ///< material coordinates
+  std::uint32_t body = 0;             ///< whose material it cuts, where it is glued
+  std::optional<Strength> glue = {};  ///< what holds its walls (a sheet); none: they are cracks from the start
+};
+
 /// All that decides what a run computes.
 struct Scene {
-  std::vector<SceneBody> bodies;                         ///< at least one
-  int k = 26;                                            ///< neighbours of a node (§ 6.2)
-  Material material;                                     ///< of bodies without one of their own
-  std::vector<Front> scores;                             ///< cracks made before time 0, in material coordinates
-  std::vector<std::pair<std::string, int>> score_files;  ///< that `scores` were read from, and the body of each
+  std::vector<SceneBody> bodies;  ///< at least one
+  int k = 26;                     ///< neighbours of a node (§ 6.2)
+  Material material;              ///< of bodies without one of their own
+  std::vector<SceneScore> scores;
+  std::vector<SceneScoreFile> score_files;  ///< that `scores` were read from
   std::vector<Grip> grips;
   std::vector<Pull> pulls;
   std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides

@@ -12,6 +12,7 @@
 #include "kerf/body.h"
 #include "kerf/contact.h"
 #include "kerf/crack.h"
+#include "kerf/glue.h"
 #include "kerf/mesh.h"
 #include "kerf/progress.h"
 #include "kerf/scene.h"
@@ -56,6 +57,8 @@ struct FractureStats {
   std::size_t divided = 0;   ///< branches
   std::size_t advanced = 0;  ///< steps of fronts
   std::size_t refused = 0;   ///< steps that could not be made
+  std::size_t broken = 0;    ///< glued bonds broken
+  double broken_area = 0;    ///< of these, undeformed, model units²
 };
 
 /// Shape of the sheets that blades cut. Largest values of the frame, or of the run.
@@ -103,6 +106,7 @@ struct RunState {
   State motion;
   std::vector<std::vector<EdgeFront>> fronts;  ///< per blade: a front for each part of the edge that cuts
   FractureState fracture;
+  GluedBonds glued;                       ///< walls of glued scores
   std::vector<Vec3> surface;              ///< position of each living surface vertex, ascending by id; empty without
                                           ///< self-contact and before the first frame
   std::vector<std::uint32_t> body_index;  ///< per node: its body of the scene

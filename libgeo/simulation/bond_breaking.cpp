@@ -1,0 +1,68 @@
+// A bond is the unit that breaks, as in the assets that kerf-pieces exports: it breaks as a whole.
+#include "simulation/bond_breaking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "simulation/strength.h"
+
+namespace geo {
+
+BondBreaking::BondBreaking(const GluedBonds& glued) : neighbors_(glued.bonds.size()) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> at_edge;
+  for (std::uint32_t b = 0; b < glued.bonds.size(); ++b)
+    for (const Triangle& face : glued.bonds[b].faces)
+      for (std::size_t k = 0; k < 3; ++k) {
+        auto& bonds = at_edge[std::minmax(face[k], face[(k + 1) % 3])];
+        if (bonds.empty() || bonds.back() != b) bonds.push_back(b);
+      }
+  for (const auto& [edge, bonds] : at_edge)
+    for (const auto b : bonds)
+      for (const auto o : bonds)
+        if (o != b) neighbors_[b].push_back(o);
+  for (auto& list : neighbors_) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+}
+
+double BondBreaking::limit(const GluedBonds& glued, std::uint32_t bond) const {
+  const GluedBond& own = glued.bonds[bond];
+  const bool is_at_crack = std::any_of(neighbors_[bond].begin(), neighbors_[bond].end(),
+                                       [&](std::uint32_t o) { return glued.bonds[o].broken; });
+  if (!is_at_crack || own.toughness == 0) return own.strength;
+  return std::min(own.strength, stress_of_toughness(own.toughness, std::sqrt(own.area)));
+}
+
+std::vector<std::uint32_t> BondBreaking::overloaded(const GluedBonds& glued, std::span<const BondLoad> loads,
+                                                    double friction) const {
+  std::vector<double> ratio(loads.size(), 0);
+  for (std::uint32_t b = 0; b < loads.size(); ++b)
+    if (!glued.bonds[b].broken) ratio[b] = loads[b].effective(friction) / limit(glued, b);
+  // Of equal ratios the lower bond comes first.
+  const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
+    return ratio[a] != ratio[b] ? ratio[a] > ratio[b] : a < b;
+  };
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t b = 0; b < loads.size(); ++b)
+    if (ratio[b] > 1 && std::none_of(neighbors_[b].begin(), neighbors_[b].end(),
+                                     [&](std::uint32_t o) { return ratio[o] > 1 && is_before(o, b); }))
+      result.push_back(b);
+  std::sort(result.begin(), result.end(), is_before);
+  return result;
+}
+
+void set_strength(GluedBonds& glued, std::size_t first, const Strength& glue, std::uint64_t seed, double diagonal,
+                  std::uint32_t body) {
+  for (std::size_t b = first; b < glued.bonds.size(); ++b) {
+    GluedBond& bond = glued.bonds[b];
+    const double factor = strength_factor(glue, seed, diagonal, bond.centroid);
+    bond.body = body;
+    bond.strength = factor * glue.strength;
+    bond.toughness = factor * glue.toughness;
+  }
+}
+
+}  // namespace geo

@@ -156,19 +156,23 @@ BodyDelta update_after_crack(Body& body, CrackDelta crack, ClosestVertices close
 
 }  // namespace
 
-CrackTransaction::CrackTransaction(Body& body, const FrontState& front, std::span<const Vec3> next,
-                                   const CrackOptions& options, SplitStats* stats)
-    : body_(&body), front_(front), stats_(stats) {
+CrackTransaction::CrackTransaction(Body& body, const CrackEdit& edit, SplitStats* stats) : body_(&body), stats_(stats) {
   prepare_cache(body);
-  crack_ = advance(body.surface, front_, next, options, stats ? &stats->crack : nullptr);
+  crack_ = edit(body.surface, stats ? &stats->crack : nullptr);
   if (!crack_.empty()) open_.reset(&body.surface);
+}
+
+CrackEdit advance_of(FrontState& front, std::span<const Vec3> next, const CrackOptions& options) {
+  return [&front, next, options](Complex& complex, CrackStats* stats) {
+    return advance(complex, front, next, options, stats);
+  };
 }
 
 void CrackTransaction::prepare() {
   if (!closest_) closest_ = closest_after(*body_, crack_);
 }
 
-BodyDelta CrackTransaction::commit(FrontState& front, const StepVeto& veto) {
+BodyDelta CrackTransaction::commit(const StepVeto& veto) {
   auto clock = std::chrono::steady_clock::now();
   double veto_seconds = 0;
   const auto ask = [&] {
@@ -180,13 +184,15 @@ BodyDelta CrackTransaction::commit(FrontState& front, const StepVeto& veto) {
   parallel_invoke([&] { prepare(); }, ask);
   if (stats_) stats_->binding_seconds += std::max(0.0, seconds_since(clock) - veto_seconds);
   open_.release();
-  front = std::move(front_);
   return update_after_crack(*body_, std::move(crack_), std::move(*closest_), stats_);
 }
 
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
                 SplitStats* stats) {
-  return CrackTransaction(body, front, next, options, stats).commit(front);
+  FrontState advanced = front;
+  BodyDelta delta = CrackTransaction(body, advance_of(advanced, next, options), stats).commit();
+  front = std::move(advanced);
+  return delta;
 }
 
 BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats, const Progress& progress) {

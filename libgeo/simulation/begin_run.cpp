@@ -3,46 +3,45 @@
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/simulation.h"
+#include "simulation/crack_writer.h"
+#include "simulation/next_crack.h"
 #include "simulation/scene_body.h"
 
 namespace geo {
 namespace {
 
-void follow_donors(const BodyDelta& delta, RunState& state) {
-  for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
-}
-
-void insert_scored_sheet(const Front& sheet, std::int32_t crack, RunStart& run) {
+// The crack of a sheet; throws as insert_sheet().
+CrackEdit sheet_edit(const Complex& surface, const Front& sheet, std::int32_t crack) {
   TriangleMesh mesh;
   mesh.vertices = sheet.steps[0];
   mesh.triangles = sheet.triangles;
-  Complex scored = run.body.surface;
+  Complex scored = surface;
   insert_sheet(scored, mesh, crack);
-  follow_donors(update_body(run.body, scored), run.state);
+  return
+      [scored = std::move(scored)](Complex& complex, CrackStats*) { return complex.apply(complex.difference(scored)); };
 }
 
 // Inserts the scene's prescored cracks: fronts step by step, sheets whole.
 void prescore(const Scene& scene, RunStart& run, const Progress& progress) {
-  CrackOptions options;
-  options.seed = scene.seed;
+  CrackWriter writer(run.body, run.state.body_index, {.seed = scene.seed});
+  FrameStats unused;
   for (std::size_t s = 0; s < scene.scores.size(); ++s) {
     const Front& front = scene.scores[s];
-    const std::int32_t crack = run.body.surface.crack_count() + 1;
+    const std::int32_t crack = next_crack(run.body.surface, run.state);
     if (front.is_sheet()) {
       report(progress, "prescoring", s, scene.scores.size());
-      insert_scored_sheet(front, crack, run);
+      if (!writer.write(sheet_edit(run.body.surface, front, crack), unused))
+        throw GeometryError("the prescored sheet '" + front.name + "' cannot be inserted");
       continue;
     }
     FrontState state = begin_front(front.steps.at(0), front.closed, crack);
     for (std::size_t k = 1; k < front.steps.size(); ++k) {
       report(progress, "prescoring", s, scene.scores.size());
-      try {
-        follow_donors(split(run.body, state, resample_front(front.steps[0], front.steps[k], front.closed), options),
-                      run.state);
-      } catch (const GeometryError&) {
+      auto written = writer.write(state, resample_front(front.steps[0], front.steps[k], front.closed), unused);
+      if (!written)
         throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name +
                             "' cannot be made");
-      }
+      state = std::move(written->front);
     }
   }
 }

@@ -96,6 +96,8 @@ struct FrameStats {
   FrameStats& operator+=(const FrameStats& o);
   /// Seconds of all phases of cutting.
   double split_seconds() const;
+  /// Seconds of all phases.
+  double phase_seconds() const;
 };
 
 /// All that a run needs to continue, in addition to its body.

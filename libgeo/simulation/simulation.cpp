@@ -1,44 +1,35 @@
-// Simulation of kerf/simulation.h: what callers change between two frames, and the deformed surface.
-// The time loop computes the frames.
+// Simulation of kerf/simulation.h: what callers change between two frames, and the deformed
+// surface. The time loop computes the frames.
 #include "kerf/simulation.h"
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/deformation.h"
+#include "simulation/driven_motion.h"
 #include "simulation/run_data.h"
 #include "simulation/time_loop.h"
 
 namespace geo {
-namespace {
-
-// A key with this rotation, whose axis is arbitrary where there is none.
-Motion::Key key_at(double time, const Pose& pose) {
-  const Eigen::AngleAxisd turn(pose.rotation);
-  return {time, pose.position, turn.angle() == 0 ? Vec3(Vec3::UnitZ()) : turn.axis(),
-          turn.angle() * 180 / std::numbers::pi};
-}
-
-// From the present pose at time `from` to `pose` at time `to`.
-Motion towards(const Motion& present, double from, double to, const Pose& pose) {
-  return {{key_at(from, present.at(from)), key_at(to, pose)}};
-}
-
-void append(Motion& motion, const Motion::Key& key) {
-  if (!motion.keys.empty() && !(motion.keys.back().time < key.time))
-    throw InputError("a motion has a key at this time, or later");
-  motion.keys.push_back(key);
-}
-
-}  // namespace
 
 struct Simulation::Impl {
   Impl(const Scene& scene, Body body, RunState state)
       : run(scene, std::move(body), std::move(state)), loop(std::make_unique<TimeLoop>(run)) {}
-  double time_of(int frame) const { return frame * (1 / run.scene.frame_rate); }
+  // Time of a frame, in seconds. `frame`: 0 is the present one, 1 the next.
+  double time_of(int frame) const { return (run.state.frame + frame) * (1 / run.scene.frame_rate); }
+  Motion& motion_of(Handle::Kind kind, std::size_t index) {
+    switch (kind) {
+      case Handle::Kind::blade:
+        return run.scene.blades.at(index).motion;
+      case Handle::Kind::grip:
+        return run.scene.grips.at(index).motion;
+      case Handle::Kind::obstacle:
+        break;
+    }
+    return run.scene.obstacles.at(index).motion;
+  }
 
   RunData run;
   std::unique_ptr<TimeLoop> loop;
@@ -69,51 +60,37 @@ void Simulation::restore(Body body, RunState state) {
   impl_->loop = std::make_unique<TimeLoop>(impl_->run);
 }
 
-void Simulation::move_blade(std::size_t blade, const Pose& pose) {
-  Motion& motion = impl_->run.scene.blades.at(blade).motion;
-  motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
+Simulation::Handle::Handle(Impl& run, Kind kind, std::size_t index) : run_(&run), kind_(kind), index_(index) {
+  run.motion_of(kind, index);
 }
 
-void Simulation::move_grip(std::size_t grip, const Pose& pose) {
-  Motion& motion = impl_->run.scene.grips.at(grip).motion;
-  motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
+const Motion& Simulation::Handle::motion() const { return run_->motion_of(kind_, index_); }
+
+Pose Simulation::Handle::pose() const { return motion().at(run_->run.state.time); }
+
+void Simulation::Handle::drive_to(const Pose& pose) {
+  drive(run_->motion_of(kind_, index_), run_->time_of(0), key_at(run_->time_of(1), pose),
+        kind_ == Kind::blade ? AfterLastKey::removed : AfterLastKey::stays);
 }
 
-void Simulation::move_obstacle(std::size_t obstacle, const Pose& pose) {
-  Motion& motion = impl_->run.scene.obstacles.at(obstacle).motion;
-  motion = towards(motion, impl_->time_of(state().frame), impl_->time_of(state().frame + 1), pose);
+void Simulation::GripHandle::end() {
+  double& until = run().run.scene.grips.at(index()).until;
+  until = std::min(until, run().time_of(0));
 }
 
-std::size_t Simulation::add_blade(Blade blade) {
-  if (blade.points.size() < (blade.closed ? 3 : 2))
-    throw InputError("a blade has two points at least, three if closed");
-  impl_->run.scene.blades.push_back(std::move(blade));
-  impl_->run.state.fronts.emplace_back();
-  return impl_->run.scene.blades.size() - 1;
+Simulation::PullHandle::PullHandle(Impl& run, std::size_t index) : run_(&run), index_(index) {
+  run.run.scene.pulls.at(index);
 }
 
-std::size_t Simulation::add_grip(Grip grip) {
-  grip.from = std::max(grip.from, impl_->time_of(state().frame));
-  impl_->run.scene.grips.push_back(std::move(grip));
-  impl_->loop->follow_grips();
-  return impl_->run.scene.grips.size() - 1;
-}
-
-std::size_t Simulation::add_pull(Pull pull) {
-  if (pull.node && *pull.node >= body().nodes.size()) throw InputError("a pull holds a node that does not exist");
-  impl_->run.scene.pulls.push_back(std::move(pull));
-  return impl_->run.scene.pulls.size() - 1;
-}
-
-void Simulation::extend_blade(std::size_t blade, int frame, const Pose& pose) {
-  append(impl_->run.scene.blades.at(blade).motion, key_at(impl_->time_of(state().frame + frame), pose));
+Vec3 Simulation::PullHandle::end() const {
+  return run_->run.scene.pulls.at(index_).motion.at(run_->run.state.time).position;
 }
 
 // A pull that rests has two keys, however long it does: interpolation between equal positions is
 // exact.
-void Simulation::extend_pull(std::size_t pull, int frame, const Vec3& position) {
-  Motion& motion = impl_->run.scene.pulls.at(pull).motion;
-  append(motion, {impl_->time_of(state().frame + frame), position, Vec3::UnitZ(), 0});
+void Simulation::PullHandle::drive_to(const Vec3& position) {
+  Motion& motion = run_->run.scene.pulls.at(index_).motion;
+  drive(motion, run_->time_of(0), {.time = run_->time_of(1), .position = position}, AfterLastKey::removed);
   auto& keys = motion.keys;
   const auto n = keys.size();
   if (n < 3 || keys[n - 2].position != position || keys[n - 3].position != position) return;
@@ -121,13 +98,44 @@ void Simulation::extend_pull(std::size_t pull, int frame, const Vec3& position) 
   keys.pop_back();
 }
 
-void Simulation::end_grip(std::size_t grip) {
-  double& until = impl_->run.scene.grips.at(grip).until;
-  until = std::min(until, impl_->time_of(state().frame));
+Simulation::Handle Simulation::blade(std::size_t index) { return {*impl_, Handle::Kind::blade, index}; }
+Simulation::Handle Simulation::obstacle(std::size_t index) { return {*impl_, Handle::Kind::obstacle, index}; }
+Simulation::GripHandle Simulation::grip(std::size_t index) { return {*impl_, index}; }
+Simulation::PullHandle Simulation::pull(std::size_t index) { return {*impl_, index}; }
+
+Simulation::Handle Simulation::add_blade(Blade blade) {
+  if (blade.points.size() < (blade.closed ? 3 : 2))
+    throw InputError("a blade has two points at least, three if closed");
+  impl_->run.scene.blades.push_back(std::move(blade));
+  impl_->run.state.fronts.emplace_back();
+  return this->blade(scene().blades.size() - 1);
+}
+
+Simulation::Handle Simulation::add_blade(Blade blade, const Pose& pose) {
+  blade.motion.keys = {key_at(impl_->time_of(0), pose)};
+  return add_blade(std::move(blade));
+}
+
+Simulation::GripHandle Simulation::add_grip(Grip grip) {
+  grip.from = std::max(grip.from, impl_->time_of(0));
+  impl_->run.scene.grips.push_back(std::move(grip));
+  impl_->loop->follow_grips();
+  return this->grip(scene().grips.size() - 1);
+}
+
+Simulation::PullHandle Simulation::add_pull(Pull pull) {
+  if (pull.node && *pull.node >= body().nodes.size()) throw InputError("a pull holds a node that does not exist");
+  impl_->run.scene.pulls.push_back(std::move(pull));
+  return this->pull(scene().pulls.size() - 1);
+}
+
+Simulation::PullHandle Simulation::add_pull(Pull pull, const Vec3& end) {
+  pull.motion.keys = {{.time = impl_->time_of(0), .position = end}};
+  return add_pull(std::move(pull));
 }
 
 void Simulation::change(SceneChange change) {
-  change.time = impl_->time_of(state().frame);
+  change.time = impl_->time_of(0);
   if (const auto wrong = unfit(change); !wrong.empty()) throw InputError(wrong);
   impl_->run.scene.add_change(change);
 }

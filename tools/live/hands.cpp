@@ -79,9 +79,8 @@ void Hands::begin_grab(const Hand& hand, const Grab& grab, const geo::Vec3& grav
   pull.point = picked.material;
   pull.node = carrier_of(picked.nearest).value;
   pull.stiffness = pull_stiffness(*pull.node, gravity);
-  const std::size_t p = run_.add_pull(std::move(pull));
-  run_.extend_pull(p, 0, view_.world_point(grab.spot));
-  grabs_[hand] = {.pull = p, .to = grab.to, .nearest = picked.nearest};
+  const auto added = run_.add_pull(std::move(pull), view_.world_point(grab.spot));
+  grabs_[hand] = {.pull = added.index(), .to = grab.to, .nearest = picked.nearest};
 }
 
 void Hands::obey(ClientId page, const Grab& grab, const geo::Vec3& gravity) {
@@ -109,7 +108,7 @@ void Hands::obey(const Pin& pin) {
       return (p.material - x).cwiseAbs().maxCoeff() <= std::max(p.radius, pin.radius);
     });
     if (held == lasting_.pins.end()) throw BadMessage("there is no pin here");
-    run_.end_grip(held->grip);
+    run_.grip(held->grip).end();
     lasting_.pins.erase(held);
     return;
   }
@@ -118,8 +117,9 @@ void Hands::obey(const Pin& pin) {
   geo::Grip grip;
   grip.lo = (x - geo::Vec3::Constant(radius)).cwiseMin(node);
   grip.hi = (x + geo::Vec3::Constant(radius)).cwiseMax(node);
-  const std::size_t g = run_.add_grip(std::move(grip));
-  lasting_.pins.push_back({.grip = g, .material = x, .world = view_.world_point(pin.spot), .radius = radius});
+  const auto added = run_.add_grip(std::move(grip));
+  lasting_.pins.push_back(
+      {.grip = added.index(), .material = x, .world = view_.world_point(pin.spot), .radius = radius});
 }
 
 void Hands::leave(ClientId page) {
@@ -144,9 +144,8 @@ void Hands::add_blade(HeldBlade& held, const EdgePose& from) {
   blade.limit = most_motion;
   blade.back = {blade_width * coarsest, 0, 0};
   blade.thickness = blade_thickness * coarsest;
-  held.blade = run_.add_blade(std::move(blade));
+  held.blade = run_.add_blade(std::move(blade), held.edge.pose_at(from)).index();
   held.faces = run_.body().surface.face_count();
-  run_.extend_blade(*held.blade, 0, held.edge.pose_at(from));
 }
 
 void Hands::move_on(bool whole, const std::function<void()>& before_cut) {
@@ -159,7 +158,7 @@ void Hands::move_on(bool whole, const std::function<void()>& before_cut) {
       before_cut();
       add_blade(held, before);
     }
-    run_.extend_blade(*held.blade, 1, held.edge.pose());
+    run_.blade(*held.blade).drive_to(held.edge.pose());
   }
   for (const auto& [hand, held] : grabs_) move_on(held);
   for (const auto& [number, held] : lasting_.springs) move_on(held);
@@ -167,9 +166,10 @@ void Hands::move_on(bool whole, const std::function<void()>& before_cut) {
 
 // A jump of the pointer is made in several frames.
 void Hands::move_on(const HeldPull& held) {
+  auto pull = run_.pull(held.pull);
   const double most = farthest_pull * size_;
-  const geo::Vec3 before = run_.scene().pulls[held.pull].motion.keys.back().position, way = held.to - before;
-  run_.extend_pull(held.pull, 1, way.norm() > most ? geo::Vec3(before + most / way.norm() * way) : held.to);
+  const geo::Vec3 before = pull.end(), way = held.to - before;
+  pull.drive_to(way.norm() > most ? geo::Vec3(before + most / way.norm() * way) : held.to);
 }
 
 std::optional<std::vector<std::size_t>> Hands::end() {

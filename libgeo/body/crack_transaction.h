@@ -21,10 +21,10 @@ using StepVeto = std::function<void(const Complex& grown, const CrackDelta& crac
 /// added to.
 using CrackEdit = std::function<CrackDelta(Complex& complex, CrackStats* stats)>;
 
-/// A crack step of a body. While it is open, the complex has the crack and no other part of the body
-/// does. commit() updates the others. Where it has not, the destructor takes the crack back: the
-/// complex is as before. It may be moved: what it moves to has the step. One transaction of a body
-/// at a time; the body outlives it.
+/// A crack step of a body. While it is open, the complex has the crack and no other part of the
+/// body does. commit() updates the others. Where it has not, the destructor takes the crack back:
+/// the complex is as before. It may be moved: what it moves to has the step. One transaction of a
+/// body at a time; the body outlives it.
 class CrackTransaction {
  public:
   /// Steps 1 to 3 of split(): calls `edit`, whose exceptions pass; the body is unchanged then. Also

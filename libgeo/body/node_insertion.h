@@ -16,15 +16,15 @@ using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
 /// sets the bounds that depend on them.
 void set_original_nodes(Body& body, std::uint32_t count);
 
-/// The nodes that one change of a body inserts. They come last, and each has a donor: the node whose
-/// motion and material it takes. Refers to the body.
+/// The nodes that one change of a body inserts. They come last, and each has a donor: the node
+/// whose motion and material it takes. Refers to the body.
 class NewNodes {
  public:
   /// None yet.
   explicit NewNodes(Body& body) : body_(body), first_(body.nodes.size()) {}
-  /// Appends a node at x with the support radius of node `donor`. Each of `givers` gives it the same
-  /// share of its volume; without givers, the donor gives half. The sum does not change. Returns its
-  /// id.
+  /// Appends a node at x with the support radius of node `donor`. Each of `givers` gives it the
+  /// same share of its volume; without givers, the donor gives half. The sum does not change.
+  /// Returns its id.
   NodeId insert(const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers = {});
   /// Removes the nodes from `first` on, and returns their volume to their donors. Precondition:
   /// donors alone gave it, and no edge leads to these nodes yet.

@@ -1,5 +1,5 @@
 // Nodes follow first, then the surface on them. Weights of the surface, points of the solid and
-// loads wait until they are asked for.
+// loads follow when they are needed.
 #include "simulation/crack_writer.h"
 
 #include <utility>

@@ -41,7 +41,7 @@ struct WrittenCrack {
 
 /// Makes crack steps. A step is made as a whole, and all who follow have it; or it is refused, is
 /// counted in FrameStats::refused, and everything is as before. A run has two: one before its first
-/// time step, with nobody but the bodies of nodes to follow, and one in its time loop.
+/// time step, whose delta only the body indices of nodes follow, and one in its time loop.
 class CrackWriter {
  public:
   /// `options`: of the steps of fronts; `body_index`: per node, its body of the scene.

@@ -8,8 +8,8 @@
 
 namespace geo {
 
-/// A Solid whose nodes follow each crack step at once. Its points follow when they are asked for:
-/// several steps then cost one update. Refers to the body and its motion, which it changes.
+/// A Solid whose nodes follow each crack step at once. Its points follow in whole(): several steps
+/// cost one update. Refers to the body and its motion, which it changes.
 class CutSolid {
  public:
   /// Discretises the body.
@@ -17,7 +17,7 @@ class CutSolid {
   /// Continues with the body and motion as they are now, which others have replaced by those of a
   /// checkpoint. The discretisation stays if nothing was cut since it was made.
   void restart(Materials materials);
-  /// Whether a body of so many nodes fits, see restart().
+  /// Whether a body with this number of nodes fits; see restart().
   bool fits(std::size_t nodes) const { return has_followed_ || solid_.size() == nodes; }
 
   /// See Solid::set_materials().

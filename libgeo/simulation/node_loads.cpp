@@ -1,5 +1,5 @@
-// Grips come first: nodes that they hold are where they will be at the step's end. Potentials follow
-// in a fixed order, wedges before pulls.
+// Grips come first: nodes that they hold are where they will be at the step's end. Potentials
+// follow in a fixed order, wedges before pulls.
 #include "simulation/node_loads.h"
 
 namespace geo {

@@ -1,4 +1,4 @@
-// What acts on the nodes in a time step, except contact of surfaces: weight, grips, the wedges of
+// Loads on the nodes in a time step, except contact of surfaces: weight, grips, the wedges of
 // blades, pulls.
 #pragma once
 

@@ -15,7 +15,7 @@
 
 namespace geo {
 
-/// Computes frames of a run. Refers to the run, whose body nobody else changes. After
+/// Computes frames of a run. Refers to the run, and alone changes its body. After
 /// RunData::restore() a new loop takes its place.
 class TimeLoop {
  public:

@@ -154,9 +154,9 @@ class Cutting {
     return fronts;
   }
   std::int32_t next_crack() const {
-    std::int32_t crack = complex_.crack_count();  // fronts that have met nothing yet already have numbers
-    for (const auto& other : states_) crack = std::max(crack, other.crack);
-    return crack + 1;
+    geo::CrackNumbers numbers(complex_);
+    for (const auto& other : states_) numbers.note(other.crack);
+    return numbers.next();
   }
 
   // Continues a front of this name, with its contacts, that stopped at the first step of this run.

@@ -26,7 +26,8 @@ void require_inside(const Body& body, const std::vector<std::uint32_t>& componen
 
 }  // namespace
 
-Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, const Progress& progress) {
+Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, const Progress& progress,
+                std::vector<NodeId>* donors) {
   if (nodes.size() == 0) throw InputError("there are no nodes; make some with kerf-sample");
   if (options.k < 3 || options.k > 1000) throw InputError("k must be from 3 to 1000");
   if (options.guide_spacing != 0 && !(options.guide_spacing >= 0.05 && options.guide_spacing <= 10))
@@ -52,7 +53,8 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
     require_inside(body, component);
     label_pieces(body);
     auto mismatch = find_mismatch(body, component);
-    repair_connectivity(body, mismatch, [&](NodeId first_new, std::span<const NodePair> joins) {
+    NewNodes inserted(body);
+    repair_connectivity(inserted, mismatch, [&](NodeId first_new, std::span<const NodePair> joins) {
       update_graph({.nodes = body.nodes,
                     .grid = body.cache->grid,
                     .first_new = first_new,
@@ -61,6 +63,7 @@ Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options, cons
                     .joins = joins},
                    body.graph);
     });
+    if (donors) *donors = inserted.donors();
   }
   if (body.guide_spacing > 0) add_guides(body.nodes, body.cache->grid, obstacles, all_guides(body), body.graph);
   build_neighborhoods(body.nodes, body.graph, obstacles, options.method, progress);

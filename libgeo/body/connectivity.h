@@ -68,7 +68,7 @@ struct FreshCut {
 /// all pairs are connected. Works in rounds of decreasing spacing; `update` is called once a round.
 /// Afterwards mismatch.representative has a node of each piece visited. `cut`: nodes are added near
 /// its edges, if some of them joined the components. Else the passage may be anywhere.
-void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update,
+void repair_connectivity(NewNodes& inserted, ConnectivityMismatch& mismatch, const GraphUpdater& update,
                          const FreshCut& cut = {});
 
 /// The nodes of each detached piece, ascending. A piece that came apart into n parts gives n − 1

@@ -19,7 +19,8 @@ namespace {
 
 // Inserts nodes along a taut path from node i to node j and records their joins. False, and no
 // nodes, when there is no such path.
-bool insert_nodes_along(Body& body, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
+bool insert_nodes_along(NewNodes& inserted, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
+  const Body& body = inserted.body();
   const Complex& k = body.surface;
   const auto path = taut_path(k, body.nodes.position[i.index()], body.nodes.position[j.index()], spacing);
   if (path.empty()) return false;
@@ -32,7 +33,7 @@ bool insert_nodes_along(Body& body, NodeId i, NodeId j, double spacing, std::vec
       if (!is_blocked(k, path[s], path[n])) next = n;
     NodeId node = j;
     if (next + 1 < path.size()) {
-      node = insert_node(body, path[next], donors.front(), spacing);
+      node = inserted.insert(path[next], donors.front(), spacing);
       donors.push_back(donors.front());
       donors.push_back(node);
       donors.pop_front();
@@ -58,12 +59,13 @@ NodeId donor_of(const Body& body, const Vec3& x, const std::set<std::int32_t>& p
 }
 
 // Inserts a node into the piece without nodes that has surface vertex v; invalid where none fits.
-NodeId insert_node_into_piece(Body& body, SurfaceVertexId v, const std::set<std::int32_t>& parts) {
+NodeId insert_node_into_piece(NewNodes& inserted, SurfaceVertexId v, const std::set<std::int32_t>& parts) {
+  const Body& body = inserted.body();
   const NodeId near = donor_of(body, body.surface.point(body.surface.site(v)), {});
   const double spacing = body.nodes.spacing[near.index()];
   const auto x = point_in_piece(body.surface, v, spacing,
                                 [&](Side s) { return body.cache->piece[body.surface.surface_vertex(s, 0).index()]; });
-  return x ? insert_node(body, *x, donor_of(body, *x, parts), spacing) : NodeId();
+  return x ? inserted.insert(*x, donor_of(body, *x, parts), spacing) : NodeId();
 }
 
 // Nearest nodes within a piece. Remembers the pieces of nodes; ignores nodes inserted later.
@@ -173,8 +175,9 @@ std::optional<Vec3> point_between_corners(const Complex& k, const std::vector<Si
 // mismatch.
 class ConnectivityRepair {
  public:
-  ConnectivityRepair(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update, const FreshCut& cut)
-      : body_(body), mismatch_(mismatch), update_(update), cut_(cut) {}
+  ConnectivityRepair(NewNodes& inserted, ConnectivityMismatch& mismatch, const GraphUpdater& update,
+                     const FreshCut& cut)
+      : inserted_(inserted), body_(inserted.body()), mismatch_(mismatch), update_(update), cut_(cut) {}
   void run() {
     // Rounds have spacing 0.7 · 0.8^round: the first is denser than the sampling, which missed the
     // passage, and the last (round 11) has 6 % of it. More rounds: finer nodes in passages.
@@ -196,7 +199,7 @@ class ConnectivityRepair {
   void fill_empty_pieces() {
     for (const auto v : mismatch_.empty_pieces) {
       const auto piece = body_.cache->piece[v.index()];
-      if (const NodeId i = insert_node_into_piece(body_, v, mismatch_.parts[piece]); i.valid()) {
+      if (const NodeId i = insert_node_into_piece(inserted_, v, mismatch_.parts[piece]); i.valid()) {
         mismatch_.representative[piece] = i;
         body_.cache->pieces_without_node.erase(piece);
       } else {
@@ -247,7 +250,7 @@ class ConnectivityRepair {
     if (inserted >= most) return;
     std::sort(walls.begin(), walls.end());
     walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
-    insert_nodes_near(body_, walls,
+    insert_nodes_near(inserted_, walls,
                       {.spacing = spacing, .seed = 0x6b657266u, .limit = most - inserted, .fresh = cut_.faces});
   }
   // Inserts nodes at the walls near the ends of cut edges. False, and no nodes, if they would not
@@ -259,7 +262,7 @@ class ConnectivityRepair {
     add_walls(ends, walls);
     insert_nodes_at(std::move(walls), first_of_round, spacing);
     if (is_connected_by(first_new, component)) return true;
-    remove_nodes(body_, first_new);
+    inserted_.remove_from(first_new);
     return false;
   }
   // Whether nodes from `first_new` on connect a component to another one by lines of sight.
@@ -312,7 +315,7 @@ class ConnectivityRepair {
       const auto near = nearest.outside(NodeId(from), 4, component);
       const auto joins = [&](auto to) {
         return tried_.insert({NodeId(from), NodeId(to)}).second &&
-               insert_nodes_along(body_, NodeId(from), NodeId(to), spacing, joins_);
+               insert_nodes_along(inserted_, NodeId(from), NodeId(to), spacing, joins_);
       };
       if (std::any_of(near.begin(), near.end(), joins)) return true;
     }
@@ -332,6 +335,7 @@ class ConnectivityRepair {
     mismatch_ = std::move(left);
   }
 
+  NewNodes& inserted_;
   Body& body_;
   ConnectivityMismatch& mismatch_;
   const GraphUpdater& update_;
@@ -362,8 +366,9 @@ std::optional<Vec3> point_in_piece(const Complex& k, SurfaceVertexId v, double r
   return point_between_corners(k, sides, piece, wanted);
 }
 
-void repair_connectivity(Body& body, ConnectivityMismatch& mismatch, const GraphUpdater& update, const FreshCut& cut) {
-  ConnectivityRepair(body, mismatch, update, cut).run();
+void repair_connectivity(NewNodes& inserted, ConnectivityMismatch& mismatch, const GraphUpdater& update,
+                         const FreshCut& cut) {
+  ConnectivityRepair(inserted, mismatch, update, cut).run();
 }
 
 }  // namespace geo

@@ -16,7 +16,6 @@ namespace geo {
 /// is unseen when none of its vertices is the closest visible one of any node.
 struct IncrementalCache {
   NodeGrid grid;                                ///< over nodes.position
-  std::vector<NodeId> donors;                   ///< for each node inserted by the last step: BodyDelta::donors
   std::vector<std::int32_t> piece;              ///< by surface vertex: the label of its piece of material; −1: dead
   std::int32_t piece_count = 0;                 ///< labels in use are below this
   std::set<std::int32_t> pieces_without_node;   ///< labels, as far as known

@@ -54,31 +54,31 @@ double take_half(NodeSet& nodes, NodeId giver) { return nodes.volume[giver.index
 
 }  // namespace
 
-NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers) {
-  const NodeId id(body.nodes.size());
-  NodeSet& nodes = body.nodes;
+NodeId NewNodes::insert(const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers) {
+  NodeSet& nodes = body_.nodes;
+  const NodeId id(nodes.size());
   const double volume = givers.empty() ? take_half(nodes, donor) : take_volume(nodes, spacing, givers);
   nodes.position.push_back(x);
   nodes.spacing.push_back(spacing);
   nodes.radius.push_back(double(nodes.radius[donor.index()]));
   nodes.volume.push_back(volume);
-  body.debris.push_back(0);
-  body.cache->donors.push_back(donor);
-  body.cache->grid.insert(nodes.position, id.value);
+  body_.debris.push_back(0);
+  body_.cache->grid.insert(nodes.position, id.value);
+  donors_.push_back(donor);
   return id;
 }
 
-void remove_nodes(Body& body, NodeId first) {
-  NodeSet& nodes = body.nodes;
+void NewNodes::remove_from(NodeId first) {
+  NodeSet& nodes = body_.nodes;
   for (std::uint32_t i = std::uint32_t(nodes.size()); i-- > first.value;) {
-    nodes.volume[body.cache->donors.back().index()] += nodes.volume[i];
-    body.cache->grid.erase(i, nodes.position[i]);
+    nodes.volume[donors_.back().index()] += nodes.volume[i];
+    body_.cache->grid.erase(i, nodes.position[i]);
     nodes.position.pop_back();
     nodes.spacing.pop_back();
     nodes.radius.pop_back();
     nodes.volume.pop_back();
-    body.debris.pop_back();
-    body.cache->donors.pop_back();
+    body_.debris.pop_back();
+    donors_.pop_back();
   }
 }
 
@@ -124,8 +124,9 @@ std::vector<std::uint32_t> visible_nodes(const Body& body, const Vec3& x, const 
 
 }  // namespace
 
-std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, const InsertionOptions& options) {
+std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& faces, const InsertionOptions& options) {
   if (faces.empty()) return 0;
+  Body& body = inserted.body();
   std::vector<std::array<Vec3, 3>> triangles;
   for (const FaceId f : faces) triangles.push_back(body.surface.corners(f));
   CrackSpacing crack_spacing(body);
@@ -152,8 +153,8 @@ std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, cons
     const auto seen_before =
         visible.empty() ? visible_nodes(body, s.position, nearest, options.fresh) : std::vector<std::uint32_t>();
     const NodeId donor(!visible.empty() ? visible[0] : !seen_before.empty() ? seen_before[0] : nearest[0]);
-    const NodeId node = options.spacing == 0 ? insert_node(body, s.position, donor, s.spacing, visible)
-                                             : insert_node(body, s.position, donor, s.spacing);
+    const NodeId node = options.spacing == 0 ? inserted.insert(s.position, donor, s.spacing, visible)
+                                             : inserted.insert(s.position, donor, s.spacing);
     if (options.spacing == 0 && !visible.empty()) {
       // In proportion to the spacing and wide enough for a dozen neighbours, as the sampling makes
       // it.

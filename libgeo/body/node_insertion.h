@@ -16,14 +16,32 @@ using NodePair = std::pair<NodeId, NodeId>;  ///< first < second
 /// sets the bounds that depend on them.
 void set_original_nodes(Body& body, std::uint32_t count);
 
-/// Appends a node at x with the support radius of node `donor`. Each of `givers` gives it the same
-/// share of its volume; without givers, the donor gives half. The sum does not change. Returns its
-/// id.
-NodeId insert_node(Body& body, const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers = {});
+/// The nodes that one change of a body inserts. They come last, and each has a donor: the node
+/// whose motion and material it takes. Refers to the body.
+class NewNodes {
+ public:
+  /// None yet.
+  explicit NewNodes(Body& body) : body_(body), first_(body.nodes.size()) {}
+  /// Appends a node at x with the support radius of node `donor`. Each of `givers` gives it the
+  /// same share of its volume; without givers, the donor gives half. The sum does not change.
+  /// Returns its id.
+  NodeId insert(const Vec3& x, NodeId donor, double spacing, std::span<const std::uint32_t> givers = {});
+  /// Removes the nodes from `first` on, and returns their volume to their donors. Precondition:
+  /// donors alone gave it, and no edge leads to these nodes yet.
+  void remove_from(NodeId first);
 
-/// Removes the nodes from `first` on, which the step inserted last, and returns their volume to
-/// their donors. Precondition: donors alone gave it, and no edge leads to these nodes yet.
-void remove_nodes(Body& body, NodeId first);
+  /// The body.
+  Body& body() const { return body_; }
+  /// The first of them; where there is none, the number of nodes.
+  NodeId first() const { return first_; }
+  /// The donor of each.
+  const std::vector<NodeId>& donors() const { return donors_; }
+
+ private:
+  Body& body_;
+  NodeId first_;
+  std::vector<NodeId> donors_;
+};
 
 /// Options of insert_nodes_near().
 struct InsertionOptions {
@@ -37,7 +55,7 @@ struct InsertionOptions {
 
 /// § 6.4: inserts nodes on both sides of the faces, inside the material, visible from the face, and
 /// not too close to nodes that they see. Returns their number.
-std::size_t insert_nodes_near(Body& body, const std::vector<FaceId>& faces, const InsertionOptions& options);
+std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& faces, const InsertionOptions& options);
 
 /// Moves nodes that are on or very near one of the faces away from it and from all other faces near
 /// them: each node at most once, through no face that it does not touch. Returns them, ascending.

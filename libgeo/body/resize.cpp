@@ -21,7 +21,6 @@ BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> ra
   prepare_cache(body);
   BodyDelta delta;
   delta.first_new_node = NodeId(body.nodes.size());
-  body.cache->donors.clear();
   std::vector<NodeId> resized;
   for (const auto& [i, wanted] : radii) {
     double& now = body.nodes.radius[i.index()];

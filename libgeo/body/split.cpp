@@ -44,11 +44,11 @@ class BodyUpdater {
       : body_(body),
         progress_(progress),
         near_(triangles_near(body.surface)),
+        inserted_(body),
         binding_(body),
         closest_(std::move(closest)) {
     delta.crack = std::move(crack);
-    delta.first_new_node = NodeId(body.nodes.size());
-    body.cache->donors.clear();
+    delta.first_new_node = inserted_.first();
   }
 
   /// Step 5: moves nodes off the crack, and inserts nodes on both sides of it (§ 6.4).
@@ -56,7 +56,7 @@ class BodyUpdater {
     const auto& faces = delta.crack.new_crack_faces;
     report(progress_, "new nodes", 0, faces.size());
     delta.moved_nodes = move_nodes_off(body_, faces);
-    if (body_.resample_limit > 0) insert_nodes_near(body_, faces, {.seed = body_.crack_steps, .fresh = faces});
+    if (body_.resample_limit > 0) insert_nodes_near(inserted_, faces, {.seed = body_.crack_steps, .fresh = faces});
   }
   /// Steps 4 and 6: E_cut, E_new and the neighbours of P_update (§ 6.3, 6.4).
   void update_graph_and_neighbors() {
@@ -97,7 +97,7 @@ class BodyUpdater {
                                      body_.graph);
       updated_.insert(more.updated_nodes.begin(), more.updated_nodes.end());
     };
-    repair_connectivity(body_, mismatch, update, {delta.crack.new_crack_faces, graph_update.cut_edges});
+    repair_connectivity(inserted_, mismatch, update, {delta.crack.new_crack_faces, graph_update.cut_edges});
     delta.detached = detached_nodes(body_, pieces_, mismatch);
     delta.updated_nodes.assign(updated_.begin(), updated_.end());
     mark_debris(body_, delta.updated_nodes);
@@ -106,7 +106,7 @@ class BodyUpdater {
   void rebind_vertices() {
     report(progress_, "binding", 0, delta.crack.new_faces.size());
     delta.rebound_vertices = binding_.finish();
-    delta.donors = body_.cache->donors;
+    delta.donors = inserted_.donors();
     ++body_.crack_steps;
   }
   void add_counts(SplitStats& stats) const {
@@ -126,6 +126,7 @@ class BodyUpdater {
   Body& body_;
   const Progress& progress_;
   const TrianglesNear near_;
+  NewNodes inserted_;
   std::set<NodeId> updated_;  // P_update of all updates
   BindingUpdate binding_;
   ClosestVertices closest_;
@@ -156,29 +157,20 @@ BodyDelta update_after_crack(Body& body, CrackDelta crack, ClosestVertices close
 
 }  // namespace
 
-CrackTransaction::CrackTransaction(Body& body, const FrontState& front, std::span<const Vec3> next,
-                                   const CrackOptions& options, SplitStats* stats)
-    : body_(&body), front_(front), stats_(stats) {
+CrackTransaction::CrackTransaction(Body& body, const CrackEdit& edit, SplitStats* stats) : body_(&body), stats_(stats) {
   prepare_cache(body);
-  crack_ = advance(body.surface, front_, next, options, stats ? &stats->crack : nullptr);
+  crack_ = edit(body.surface, stats ? &stats->crack : nullptr);
   if (!crack_.empty()) open_.reset(&body.surface);
 }
 
-CrackTransaction::CrackTransaction(Body& body, const std::function<CrackDelta(Complex&)>& grow, SplitStats* stats)
-    : body_(&body), stats_(stats) {
-  prepare_cache(body);
-  crack_ = grow(body.surface);
-  if (!crack_.empty()) open_.reset(&body.surface);
+CrackEdit advance_of(FrontState& front, std::span<const Vec3> next, const CrackOptions& options) {
+  return [&front, next, options](Complex& complex, CrackStats* stats) {
+    return advance(complex, front, next, options, stats);
+  };
 }
 
 void CrackTransaction::prepare() {
   if (!closest_) closest_ = closest_after(*body_, crack_);
-}
-
-BodyDelta CrackTransaction::commit(FrontState& front, const StepVeto& veto) {
-  BodyDelta delta = commit(veto);
-  front = std::move(front_);
-  return delta;
 }
 
 BodyDelta CrackTransaction::commit(const StepVeto& veto) {
@@ -198,7 +190,10 @@ BodyDelta CrackTransaction::commit(const StepVeto& veto) {
 
 BodyDelta split(Body& body, FrontState& front, const std::vector<Vec3>& next, const CrackOptions& options,
                 SplitStats* stats) {
-  return CrackTransaction(body, front, next, options, stats).commit(front);
+  FrontState advanced = front;
+  BodyDelta delta = CrackTransaction(body, advance_of(advanced, next, options), stats).commit();
+  front = std::move(advanced);
+  return delta;
 }
 
 BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats, const Progress& progress) {

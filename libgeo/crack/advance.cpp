@@ -239,7 +239,7 @@ Vec3 displaced(const Vec3& p, double jitter, Random& random) {
 // Displaces the points of a front that has not made a step yet and its new position, for a repeated
 // attempt.
 void displace_front(FrontState& front, std::vector<Vec3>& target, double jitter, Random& random) {
-  const bool first = front.step == 0;
+  const bool first = !front.has_moved;
   for (std::size_t i = 0; i < target.size(); ++i)
     if (target[i] != front.points[i].position || first) target[i] = displaced(target[i], jitter, random);
   if (!first) return;
@@ -274,7 +274,7 @@ std::vector<Vec3> shortened(const FrontState& front, const std::vector<Vec3>& ne
 FrontState prepared(const FrontState& front, const Complex& complex, double face_offset) {
   FrontState old = front;
   update_contacts(old, complex);
-  if (front.step == 0)
+  if (!front.has_moved)
     for (auto& segment : old.segments)
       for (auto& p : segment)
         if (!p.id.valid()) p.position = offset_from_faces(complex, p.position, face_offset);
@@ -344,6 +344,7 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
     ++done.attempts;
     try {
       Step result = try_step(complex, from, target, snapping, clearance, done);
+      result.front.has_moved = true;
       ++result.front.step;
       front = std::move(result.front);
       if (stats) *stats += done;

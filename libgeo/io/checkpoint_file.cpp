@@ -66,6 +66,7 @@ FrontState front_from(const nlohmann::json& about, Supply<Vec3>& places, const K
   front.closed = about.at("closed").get<bool>();
   front.crack = json_integer<std::int32_t>(about.at("crack"));
   front.step = json_integer<std::uint32_t>(about.at("step"));
+  front.has_moved = front.step > 0;
   for (const auto& segment : about.at("segments")) {
     front.segments.emplace_back();
     for (const auto& id : segment) {

@@ -340,6 +340,7 @@ void Reader::fronts() {
     FrontState f;
     f.crack = whole(column(*fronts, "crack")[i], "crack");
     f.step = static_cast<std::uint32_t>(std::max(0, whole(column(*fronts, "step")[i], "step")));
+    f.has_moved = f.step > 0;
     f.closed = column(*fronts, "closed")[i] != 0;
     if (i < names.size()) f.name = names[i];
     if (f.crack < 1) throw InputError(name_ + ": a front has no crack");

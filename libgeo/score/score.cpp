@@ -139,7 +139,7 @@ class Scoring {
     return pieces.count;
   }
 
-  std::int32_t new_crack() const { return model_.crack_count() + 1; }
+  std::int32_t new_crack() const { return CrackNumbers(model_).next(); }
 
   // Whether a piece has both sides of a new wall.
   bool has_wall_inside(const Complex& cut, const Pieces& pieces) const {

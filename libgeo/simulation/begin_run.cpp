@@ -5,14 +5,12 @@
 #include "kerf/simulation.h"
 #include "score/jagged.h"
 #include "simulation/bond_breaking.h"
+#include "simulation/crack_writer.h"
+#include "simulation/next_crack.h"
 #include "simulation/scene_body.h"
 
 namespace geo {
 namespace {
-
-void follow_donors(const BodyDelta& delta, RunState& state) {
-  for (const NodeId d : delta.donors) state.body_index.push_back(std::uint32_t(state.body_index[d.index()]));
-}
 
 // Divides the walls of a sheet so that they can follow the deformed material where they open:
 // triangles as large as cells cannot.
@@ -24,7 +22,9 @@ void refine(TriangleMesh& walls, const Body& body) {
   refine_walls(walls, TriangleBvh(skin), body.finest_spacing, body.finest_spacing);
 }
 
-void insert_scored_sheet(const SceneScore& score, std::int32_t crack, std::uint64_t seed, RunStart& run) {
+// The crack of a sheet; throws as insert_sheet(). Where it is glued, only its outline on the skin is
+// inserted, and its bonds are appended to the run's.
+CrackEdit sheet_edit(const SceneScore& score, const Scene& scene, std::int32_t crack, RunStart& run) {
   TriangleMesh walls;
   walls.vertices = score.front.steps[0];
   walls.triangles = score.front.triangles;
@@ -35,33 +35,33 @@ void insert_scored_sheet(const SceneScore& score, std::int32_t crack, std::uint6
     GluedBonds& glued = run.state.glued;
     const std::size_t first = glued.bonds.size();
     glue_crack(scored, crack, glued);
-    set_strength(glued, first, *score.glue, seed, scored.extent().diagonal(), score.body);
+    set_strength(glued, first, *score.glue, scene.fracture.seed, scored.extent().diagonal(), score.body);
   }
-  follow_donors(update_body(run.body, scored), run.state);
+  return
+      [scored = std::move(scored)](Complex& complex, CrackStats*) { return complex.apply(complex.difference(scored)); };
 }
 
 // Inserts the scene's prescored cracks: fronts step by step, sheets whole.
 void prescore(const Scene& scene, RunStart& run, const Progress& progress) {
-  CrackOptions options;
-  options.seed = scene.seed;
+  CrackWriter writer(run.body, run.state.body_index, {.seed = scene.seed});
+  FrameStats unused;
   for (std::size_t s = 0; s < scene.scores.size(); ++s) {
     const Front& front = scene.scores[s].front;
-    const std::int32_t crack = run.body.surface.crack_count() + 1;
+    const std::int32_t crack = next_crack(run.body.surface, run.state);
     if (front.is_sheet()) {
       report(progress, "prescoring", s, scene.scores.size());
-      insert_scored_sheet(scene.scores[s], crack, scene.fracture.seed, run);
+      if (!writer.write(sheet_edit(scene.scores[s], scene, crack, run), unused))
+        throw GeometryError("the prescored sheet '" + front.name + "' cannot be inserted");
       continue;
     }
     FrontState state = begin_front(front.steps.at(0), front.closed, crack);
     for (std::size_t k = 1; k < front.steps.size(); ++k) {
       report(progress, "prescoring", s, scene.scores.size());
-      try {
-        follow_donors(split(run.body, state, resample_front(front.steps[0], front.steps[k], front.closed), options),
-                      run.state);
-      } catch (const GeometryError&) {
+      auto written = writer.write(state, resample_front(front.steps[0], front.steps[k], front.closed), unused);
+      if (!written)
         throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name +
                             "' cannot be made");
-      }
+      state = std::move(written->front);
     }
   }
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "kerf/error.h"
-#include "kerf/progress.h"
+#include "simulation/timed.h"
 
 namespace geo {
 
@@ -43,14 +43,8 @@ StepVeto Collisions::embedding_check(const Body& body, const Solid& solid, const
                                      std::optional<EmbeddingPlan>& plan, double& seconds) {
   if (!surface_) return {};
   return [&](const Complex& grown, const CrackDelta& crack) {
-    Stopwatch watch;
-    try {
-      plan = surface_->plan_embedding(body, solid, motion, grown, crack);
-    } catch (...) {
-      seconds += watch.lap();
-      throw;
-    }
-    seconds += watch.lap();
+    const Timed timed(seconds);
+    plan = surface_->plan_embedding(body, solid, motion, grown, crack);
   };
 }
 

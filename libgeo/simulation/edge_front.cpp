@@ -132,6 +132,7 @@ EdgeFront joined(EdgeFront a, const EdgeFront& b) {
   a.front.segments.push_back({a.front.points.back(), b.front.points.front()});
   a.front.segments.insert(a.front.segments.end(), b.front.segments.begin(), b.front.segments.end());
   a.front.points.insert(a.front.points.end(), b.front.points.begin(), b.front.points.end());
+  a.front.has_moved = a.front.has_moved || b.front.has_moved;
   a.front.step = std::max(a.front.step, b.front.step);
   a.at.insert(a.at.end(), b.at.begin(), b.at.end());
   return a;

@@ -270,8 +270,8 @@ class FrontOfRun {
 // Keeps fronts that the edge has left, where they can go on or tell of a cut.
 void keep_left(std::vector<EdgeFront> left, std::vector<EdgeFront>& fronts) {
   for (EdgeFront& edge : left) {
-    const auto same_cut = [&](const EdgeFront& f) { return f.front.crack == edge.front.crack && f.front.step > 0; };
-    if (edge.at.empty() || edge.front.step == 0) continue;
+    const auto same_cut = [&](const EdgeFront& f) { return f.front.crack == edge.front.crack && f.front.has_moved; };
+    if (edge.at.empty() || !edge.front.has_moved) continue;
     if (!has_contact(edge.front) && std::any_of(fronts.begin(), fronts.end(), same_cut)) continue;
     edge.is_left = true;
     fronts.push_back(std::move(edge));

@@ -78,7 +78,7 @@ bool has_contact(const FrontState& front) {
 ExistingCuts::ExistingCuts(const Complex& surface, std::span<const EdgeFront> fronts)
     : surface_(surface), fronts_(fronts) {
   for (const EdgeFront& edge : fronts)
-    if (edge.front.step > 0) own_.push_back(edge.front.crack);
+    if (edge.front.has_moved) own_.push_back(edge.front.crack);
   std::sort(own_.begin(), own_.end());
   own_.erase(std::unique(own_.begin(), own_.end()), own_.end());
 }
@@ -158,7 +158,7 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
 
 void cross_first(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                  std::vector<Vec3>& to) {
-  if (front.step > 0 || surface.crack_count() == 0) return;
+  if (front.has_moved || surface.crack_count() == 0) return;
   std::vector<std::uint8_t> is_inner(to.size(), 0), begins_in_cut(to.size(), 0);
   for (std::size_t i = 0; i < to.size(); ++i) {
     const Vec3& from = front.points[i].position;

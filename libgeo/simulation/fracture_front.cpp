@@ -62,7 +62,7 @@ GrowingFront growing(FrontState front, std::vector<Vec3> normals) {
   if (normals.size() != front.points.size()) throw InputError("a growing front needs one normal a point");
   GrowingFront g;
   g.owed.assign(front.points.size(), 0);
-  for (const auto& p : front.points) g.ended.push_back(front.step > 0 && !p.id.valid());
+  for (const auto& p : front.points) g.ended.push_back(front.has_moved && !p.id.valid());
   g.normal = std::move(normals);
   g.front = std::move(front);
   return g;
@@ -346,6 +346,7 @@ std::vector<GrowingFront> fronts_after(const GrowingFront& before, const FrontPl
       FrontState& front = runs.emplace_back().front;
       front.closed = false;
       front.crack = g.front.crack;
+      front.has_moved = g.front.has_moved;
       front.step = g.front.step;
       front.name = g.front.name;
       runs.back().length = g.length;

@@ -18,6 +18,7 @@ Ends unordered(VertexId a, VertexId b) { return a < b ? Ends{a, b} : Ends{b, a};
 FrontState front_along(const Complex& complex, std::int32_t crack, const std::vector<VertexId>& line) {
   FrontState front;
   front.crack = crack;
+  front.has_moved = true;
   front.step = 1;
   front.closed = line.front() == line.back();
   for (std::size_t k = 0; k < line.size(); ++k) {

@@ -108,10 +108,10 @@ FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
 
 // A crack number that neither the complex nor a front uses.
 std::int32_t unused_crack(const Body& body, std::span<const GrowingFront> fronts, std::span<const GrowingFront> more) {
-  std::int32_t last = body.surface.crack_count();
+  CrackNumbers numbers(body.surface);
   for (const auto& some : {fronts, more})
-    for (const auto& g : some) last = std::max(last, g.front.crack);
-  return last + 1;
+    for (const auto& g : some) numbers.note(g.front.crack);
+  return numbers.next();
 }
 
 // A front branches where the mean ratio of its live points exceeds the scene's.

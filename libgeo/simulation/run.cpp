@@ -59,4 +59,8 @@ double FrameStats::split_seconds() const {
   return split.crack.seconds() + split.graph_seconds + split.resample_seconds + split.binding_seconds;
 }
 
+double FrameStats::phase_seconds() const {
+  return split_seconds() + fracture_seconds + front_seconds + mechanics_seconds + contact_seconds + write_seconds;
+}
+
 }  // namespace geo

@@ -1,7 +1,6 @@
 // Each model is sampled on its own, then one Body is built of all nodes and skins. Equal materials
 // share an entry of the table.
 #include "simulation/scene_body.h"
-#include "body/incremental_cache.h"
 
 #include <algorithm>
 
@@ -31,10 +30,11 @@ Body build_scene_body(const Scene& scene, const PlacedModels& models, std::vecto
     append(nodes.volume, own.volume);
     body_index.resize(nodes.size(), static_cast<std::uint32_t>(b));
   }
-  Body body =
-      build_body(Complex::from_skin(models.all), std::move(nodes), {scene.k, NeighborMethod::automatic}, progress);
+  const BodyOptions options{.k = scene.k, .method = NeighborMethod::automatic};
+  std::vector<NodeId> donors;
+  Body body = build_body(Complex::from_skin(models.all), std::move(nodes), options, progress, &donors);
   // A node inserted in a narrow passage belongs to the body of its donor.
-  for (const NodeId d : body.cache->donors) body_index.push_back(std::uint32_t(body_index[d.index()]));
+  for (const NodeId d : donors) body_index.push_back(std::uint32_t(body_index[d.index()]));
   body_index.resize(body.nodes.size(), 0);
   return body;
 }

@@ -288,7 +288,12 @@ void Body::changed() {
   ++version;
 }
 
-std::int32_t Body::unused_crack() { return last_crack_ = std::max(last_crack_, body.surface.crack_count()) + 1; }
+std::int32_t Body::unused_crack() {
+  geo::CrackNumbers numbers(body.surface);
+  numbers.note(last_crack_);
+  last_crack_ = numbers.next();
+  return last_crack_;
+}
 
 void bind_body(py::module_& module) {
   bind_binding(module);

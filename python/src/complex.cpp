@@ -41,9 +41,9 @@ geo::TriangleMesh Complex::surface() const {
 }
 
 std::int32_t Complex::next_crack() const {
-  std::int32_t crack = complex.crack_count();
-  for (const auto& front : fronts) crack = std::max(crack, front->state.crack);
-  return crack + 1;
+  geo::CrackNumbers numbers(complex);
+  for (const auto& front : fronts) numbers.note(front->state.crack);
+  return numbers.next();
 }
 
 std::vector<geo::FrontState*> Complex::states() const {

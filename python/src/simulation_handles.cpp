@@ -41,11 +41,11 @@ void move(const Handle<kind>& handle, py::object to) {
   self.unrecordable =
       "move() was called, which a recording cannot hold; give the scene keyframes, or use add_blade() and extend()";
   if constexpr (kind == Kind::blade)
-    self.run().move_blade(handle.index, pose);
+    self.run().blade(handle.index).drive_to(pose);
   else if constexpr (kind == Kind::grip)
-    self.run().move_grip(handle.index, pose);
+    self.run().grip(handle.index).drive_to(pose);
   else
-    self.run().move_obstacle(handle.index, pose);
+    self.run().obstacle(handle.index).drive_to(pose);
 }
 
 template <Kind kind>
@@ -111,13 +111,13 @@ void extend(const Handle<Kind::blade>& handle, py::object to) {
   handle.simulation->acted = true;
   auto& run = handle.simulation->run();
   require_present_end(scene_object(handle).motion, run.state(), "blade");
-  run.extend_blade(handle.index, 1, pose);
+  run.blade(handle.index).drive_to(pose);
 }
 
 void end(const Handle<Kind::grip>& handle) {
   const Writing writing(handle.simulation->busy);
   handle.simulation->acted = true;
-  handle.simulation->run().end_grip(handle.index);
+  handle.simulation->run().grip(handle.index).end();
 }
 
 constexpr const char* extend_blade_doc =

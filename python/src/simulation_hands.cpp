@@ -40,9 +40,7 @@ Handle<Kind::blade> add_blade(Simulation& self, py::object points, py::object po
     throw geo::InputError("back: a blade with thickness needs the vector from its edge to its back");
   return added<Kind::blade>(self, [&](geo::Simulation& run) {
     if (blade.name.empty()) blade.name = "blade" + std::to_string(run.scene().blades.size() + 1);
-    const auto index = run.add_blade(std::move(blade));
-    run.extend_blade(index, 0, at);
-    return index;
+    return run.add_blade(std::move(blade), at).index();
   });
 }
 
@@ -51,7 +49,7 @@ Handle<Kind::grip> add_grip(Simulation& self, py::object lo, py::object hi) {
   grip.lo = point_from(lo, "lo");
   grip.hi = point_from(hi, "hi");
   if (!(grip.lo.array() <= grip.hi.array()).all()) throw geo::InputError("lo: a corner is above that of hi");
-  return added<Kind::grip>(self, [&](geo::Simulation& run) { return run.add_grip(std::move(grip)); });
+  return added<Kind::grip>(self, [&](geo::Simulation& run) { return run.add_grip(std::move(grip)).index(); });
 }
 
 Handle<Kind::pull> add_pull(Simulation& self, py::object at, py::object to, double stiffness, py::object node) {
@@ -68,11 +66,7 @@ Handle<Kind::pull> add_pull(Simulation& self, py::object at, py::object to, doub
       throw geo::InputError("node: give a number from 0 to " + std::to_string(nodes - 1));
     pull.node = static_cast<std::uint32_t>(index);
   }
-  return added<Kind::pull>(self, [&](geo::Simulation& run) {
-    const auto index = run.add_pull(std::move(pull));
-    run.extend_pull(index, 0, end);
-    return index;
-  });
+  return added<Kind::pull>(self, [&](geo::Simulation& run) { return run.add_pull(std::move(pull), end).index(); });
 }
 
 void extend(const Handle<Kind::pull>& handle, py::object to) {
@@ -80,7 +74,7 @@ void extend(const Handle<Kind::pull>& handle, py::object to) {
   const Writing writing(handle.simulation->busy);
   auto& run = handle.simulation->run();
   require_present_end(scene_object(handle).motion, run.state(), "pull");
-  run.extend_pull(handle.index, 1, position);
+  run.pull(handle.index).drive_to(position);
 }
 
 void change(Simulation& self, const py::kwargs& values) {

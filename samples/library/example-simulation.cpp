@@ -19,7 +19,6 @@ int main() {
   scene.grips.push_back({geo::Vec3(-0.01, -0.01, -0.01), geo::Vec3(0.2, 1.01, 1.01)});  // holds one side
   geo::Blade blade;
   blade.points = {{0.52, -0.2, 1.2}, {0.5, 0.5, 1.2}, {0.51, 1.2, 1.2}};
-  blade.motion.keys = {{0}, {1 / scene.frame_rate}};  // it exists, at rest, until it is steered
   scene.blades.push_back(blade);
 
   geo::Simulation simulation(scene, geo::make_block({1, 1, 1}, 0.25));
@@ -27,7 +26,7 @@ int main() {
   for (int frame = 1; frame <= 8; ++frame) {
     geo::Pose pose;  // of the next frame's end; the points above are the blade at the identity
     pose.position.z() = -0.2 * frame;
-    simulation.move_blade(0, pose);
+    simulation.blade(0).drive_to(pose);
     total += simulation.advance_frame();
   }
 

@@ -45,11 +45,11 @@ int contact(const Options& options) {
       geo::FrontState front = geo::begin_front(edge(1.3), false, blade + 1);
       for (int step = 1; step <= 8; ++step) {
         std::optional<geo::EmbeddingPlan> plan;
-        geo::CrackTransaction transaction(body, front, edge(1.3 - 0.14 * step), {}, nullptr);
-        const geo::BodyDelta delta =
-            transaction.commit(front, [&](const geo::Complex& grown, const geo::CrackDelta& crack) {
-              plan = surface.plan_embedding(body, solid, state, grown, crack);
-            });
+        const std::vector<geo::Vec3> next = edge(1.3 - 0.14 * step);
+        geo::CrackTransaction transaction(body, geo::advance_of(front, next, {}), nullptr);
+        const geo::BodyDelta delta = transaction.commit([&](const geo::Complex& grown, const geo::CrackDelta& crack) {
+          plan = surface.plan_embedding(body, solid, state, grown, crack);
+        });
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
         const double start = cpu_seconds();
         if (plan) surface.commit(std::move(*plan), body, delta);

@@ -13,8 +13,8 @@ namespace geo {
 inline BodyDelta cut(Body& body, Solid& solid, State& state, SelfContact& contact, FrontState& front,
                      const std::vector<Vec3>& next) {
   std::optional<EmbeddingPlan> plan;
-  CrackTransaction step(body, front, next, {}, nullptr);
-  const BodyDelta delta = step.commit(front, [&](const Complex& grown, const CrackDelta& crack) {
+  CrackTransaction step(body, advance_of(front, next, {}), nullptr);
+  const BodyDelta delta = step.commit([&](const Complex& grown, const CrackDelta& crack) {
     plan = contact.plan_embedding(body, solid, state, grown, crack);
   });
   solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);

@@ -160,8 +160,8 @@ TEST_CASE("steps and plans that no longer fit the surface are refused") {
   SECTION("an embedding that was planned before the surface moved") {
     std::optional<EmbeddingPlan> plan;
     const std::vector<Vec3> next{{-0.3, 0.5, 0.4}, {0.5, 0.55, 0.4}, {1.3, 0.5, 0.4}};
-    CrackTransaction step(block.body, block.front, next, {}, nullptr);
-    const BodyDelta delta = step.commit(block.front, [&](const Complex& grown, const CrackDelta& crack) {
+    CrackTransaction step(block.body, advance_of(block.front, next, {}), nullptr);
+    const BodyDelta delta = step.commit([&](const Complex& grown, const CrackDelta& crack) {
       plan = block.contact.plan_embedding(block.body, block.solid, block.state, grown, crack);
       finish(begin());
     });

@@ -122,6 +122,21 @@ TEST_CASE("a front that misses changes nothing") {
   CHECK_THROWS_AS(advance(k, front, std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}), InputError);
 }
 
+TEST_CASE("a front that passes over steps of its file is new until it has moved") {
+  // It begins so near a face that its free points move away from it, before the first step alone.
+  const auto made = [](std::uint32_t passed) {
+    Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+    FrontState front = begin_front(line({0.5, 1.5, 4 - 1e-8}, {3.5, 1.5, 4 - 1e-8}, 2), false, 1);
+    front.step = passed;
+    CHECK_FALSE(front.has_moved);
+    advance(k, front, line({0.5, 1.5, 2}, {3.5, 1.5, 2}, 2));
+    CHECK(front.has_moved);
+    CHECK(front.step == passed + 1);
+    return k.two_sided().vertices;
+  };
+  CHECK(made(6) == made(0));
+}
+
 TEST_CASE("random curved cuts, partial and complete, keep every invariant") {
   std::size_t refused = 0, steps = 0;
   for (int seed = 1; seed <= cases(25); ++seed) {

@@ -161,8 +161,8 @@ TEST_CASE("a stroke cuts, and the page has the run's surface after each message"
   session.advance();
   CHECK(force > 0);
   CHECK(session.pieces() == 2);
-  CHECK(session.strokes() == 1);
-  CHECK(session.last_stroke() == 1);
+  CHECK(session.history().strokes() == 1);
+  CHECK(session.hands().last_stroke() == 1);
   CHECK(shown(session).taken.at(7) == 1);
   CHECK(geo::count_crossings(session.run().surface()) == 0);
 }
@@ -175,7 +175,7 @@ TEST_CASE("undo and reset go back, and the recording gives the same bytes") {
   CHECK(session.pieces() == 2);
   session.undo();
   CHECK(session.pieces() == 1);
-  CHECK(session.strokes() == 0);
+  CHECK(session.history().strokes() == 0);
   CHECK(surface_bytes(session.run()) == whole);
   CHECK_THROWS_AS(session.undo(), BadMessage);
   shown(session);
@@ -190,7 +190,7 @@ TEST_CASE("undo and reset go back, and the recording gives the same bytes") {
     session.advance();
   }
   CHECK(session.stats().pull_force.at(0).norm() > 0);
-  CHECK(session.pins().size() == 1);
+  CHECK(session.hands().pins().size() == 1);
   cut(session, 2, -0.2, 1.2);
   cut(session, 3, 1.2, -0.2, 0.1);
   session.undo();
@@ -204,7 +204,7 @@ TEST_CASE("undo and reset go back, and the recording gives the same bytes") {
   CHECK(replayed(session) == surface_bytes(session.run()));
   session.reset();
   CHECK(session.run().state().frame == 0);
-  CHECK(session.pins().empty());
+  CHECK(session.hands().pins().empty());
   CHECK(session.recording().blades.empty());
   CHECK(session.effort() == Effort{0.01, 2});
   session.set_effort({0.014, 1});
@@ -261,7 +261,7 @@ TEST_CASE("requests that cannot be obeyed are refused, and hands of a page that 
   session.advance();
   session.advance();
   CHECK(session.edges().empty());
-  CHECK(session.strokes() == 0);                // none has cut
+  CHECK(session.history().strokes() == 0);      // none has cut
   session.obey(1, knife(1, Phase::move, 0.5));  // of a stroke that is over: nothing
 }
 
@@ -275,9 +275,9 @@ TEST_CASE("a stroke far behind its pointer ends a time after it was released, an
   CHECK(session.end_late_strokes(0.4, 1) == 0);
   REQUIRE(session.edges().size() == 1);
   session.advance();
-  CHECK(session.last_stroke() == 0);
+  CHECK(session.hands().last_stroke() == 0);
   CHECK(session.end_late_strokes(0.4, 1) == 1);
-  CHECK(session.last_stroke() == 1);
+  CHECK(session.hands().last_stroke() == 1);
   session.advance();
   CHECK(session.edges().empty());
   // One that is held is never late.
@@ -290,29 +290,29 @@ TEST_CASE("a stroke far behind its pointer ends a time after it was released, an
   CHECK(session.pieces() == 2);
   session.obey(1, knife(2, Phase::end, 1.2));
   session.advance();
-  CHECK(session.last_stroke() == 2);
+  CHECK(session.hands().last_stroke() == 2);
   CHECK(replayed(session) == surface_bytes(session.run()));
 }
 
 TEST_CASE("undo states and recordings are bounded") {
   SessionBounds bounds;
-  bounds.saved = 3;
+  bounds.undo.states = 3;
   {
     Session session(setup(), {}, bounds);
     for (std::uint64_t id = 1; id <= 4; ++id) cut(session, id, -0.3, 0.2 * double(id));
-    CHECK(session.strokes() == 3);
+    CHECK(session.history().strokes() == 3);
     for (int k = 0; k < 3; ++k) session.undo();
     CHECK_THROWS_AS(session.undo(), BadMessage);
     CHECK(session.recording().blades.size() == 1);
   }
-  bounds.saved = 16;
-  bounds.saved_bytes = 1;
+  bounds.undo.states = 16;
+  bounds.undo.bytes = 1;
   bounds.recorded = 2;
   bounds.changes = 1;
   Session session(setup(), {}, bounds);
   cut(session, 1, -0.3, 0.2);
   cut(session, 2, 0.3, 1.2);
-  CHECK(session.strokes() == 1);
+  CHECK(session.history().strokes() == 1);
   CHECK_THROWS_AS(session.obey(1, knife(3, Phase::begin, 0)), BadMessage);
   session.obey(Set{2e4, {}, {}, {}});
   CHECK_THROWS_AS(session.obey(Set{3e4, {}, {}, {}}), BadMessage);
@@ -342,7 +342,7 @@ TEST_CASE("an edge follows the whole path that was drawn before a frame, and goe
     std::vector<geo::Vec3> passed;
     for (int frame = 0; frame < 100; ++frame) {
       REQUIRE(session.advance(true).empty());
-      if (session.waiting().empty()) break;
+      if (session.hands().waiting().empty()) break;
     }
     const auto& blades = session.run().scene().blades;
     for (const geo::Motion::Key& key : blades.back().motion.keys) passed.push_back(key.position);
@@ -362,7 +362,7 @@ TEST_CASE("an edge follows the whole path that was drawn before a frame, and goe
         least = std::min(least, (passed[i] + k / 50.0 * (passed[i + 1] - passed[i]) - p.origin).norm());
     CHECK(least < 0.125 * 0.25 + 0.01);
   }
-  CHECK(session.strokes() == 2);
+  CHECK(session.history().strokes() == 2);
   CHECK(replayed(session) == surface_bytes(session.run()));
 }
 
@@ -378,33 +378,33 @@ TEST_CASE("redo makes undone cuts again, to the bit, with all that hands did the
   session.advance();
   const std::string both = surface_bytes(session.run());
   session.undo();
-  CHECK(session.undone() == 1);
-  CHECK(session.pins().size() == 1);
+  CHECK(session.history().undone() == 1);
+  CHECK(session.hands().pins().size() == 1);
   for (int i = 0; i < 3; ++i) session.advance();
   const std::string one = surface_bytes(session.run());
   session.undo();
-  CHECK(session.undone() == 2);
+  CHECK(session.history().undone() == 2);
   CHECK(session.run().scene().material.young == 3e4);
-  CHECK(session.pins().empty());
+  CHECK(session.hands().pins().empty());
   CHECK(session.is_weightless());
   for (int i = 0; i < 2; ++i) session.advance();
   session.redo();
   CHECK(surface_bytes(session.run()) == one);
   CHECK(session.run().scene().material.young == 2e4);
-  CHECK(session.pins().size() == 1);
+  CHECK(session.hands().pins().size() == 1);
   session.redo();
   CHECK(surface_bytes(session.run()) == both);
-  CHECK(session.strokes() == 2);
-  CHECK(session.undone() == 0);
+  CHECK(session.history().strokes() == 2);
+  CHECK(session.history().undone() == 0);
   for (int i = 0; i < 3; ++i) session.advance();
   CHECK(replayed(session) == surface_bytes(session.run()));
   session.undo();
   session.undo();
   session.redo();
   cut(session, 3, 1.2, 0.6, 0.2);
-  CHECK(session.undone() == 0);
+  CHECK(session.history().undone() == 0);
   CHECK_THROWS_AS(session.redo(), BadMessage);
-  CHECK(session.strokes() == 2);
+  CHECK(session.history().strokes() == 2);
   CHECK(replayed(session) == surface_bytes(session.run()));
 }
 
@@ -420,35 +420,35 @@ TEST_CASE("a grab that stays outlives its page, takes two keys while it rests, a
   session.leave(1);
   for (int i = 0; i < 30; ++i) session.advance();
   shown(session);
-  REQUIRE(session.holds().size() == 1);
-  const Session::Hold hold = session.holds().at(0);
+  REQUIRE(session.hands().holds().size() == 1);
+  const Hold hold = session.hands().holds().at(0);
   CHECK(hold.to == geo::Vec3(0.5, 0.5, 1.4));
   CHECK((hold.at - hold.to).norm() < 0.5);
   CHECK(session.stats().pull_force.at(0).norm() > 0);
   CHECK(session.run().scene().pulls.at(0).motion.keys.size() < 8);
   cut(session, 1, -0.2, 1.2);
-  CHECK(session.holds().size() == 1);
+  CHECK(session.hands().holds().size() == 1);
   CHECK(replayed(session) == surface_bytes(session.run()));
   session.undo();
-  REQUIRE(session.holds().size() == 1);
+  REQUIRE(session.hands().holds().size() == 1);
   for (int i = 0; i < 5; ++i) session.advance();
   CHECK(replayed(session) == surface_bytes(session.run()));
   Grab again{10, 4, Phase::begin, {}, {0.5, 0.5, 1.3}, hold.number};
   session.obey(2, again);
   CHECK_THROWS_AS(session.obey(3, again), BadMessage);
-  CHECK(session.holds().size() == 1);
+  CHECK(session.hands().holds().size() == 1);
   session.advance();
   again.phase = Phase::end;
   session.obey(2, again);
   session.advance();
-  CHECK(session.holds().empty());
+  CHECK(session.hands().holds().empty());
   for (int i = 0; i < 5; ++i) session.advance();
   CHECK(replayed(session) == surface_bytes(session.run()));
   shown(session);
   session.obey(1, Grab{11, 3, Phase::begin, {5, {0.4, 0.3, 0.3}}, {0.5, 0.5, 1.5}});
   session.obey(1, Grab{11, 3, Phase::hold, {}, {0.5, 0.5, 1.5}});
   session.reset();
-  CHECK(session.holds().empty());
+  CHECK(session.hands().holds().empty());
 }
 
 TEST_CASE("weight that is withheld acts when the first stroke is over") {
@@ -495,19 +495,19 @@ TEST_CASE("twenty steps of undo for a body of 30,000 triangles take less than 30
     stroke.phase = Phase::end;
     stroke.origin.x() = 0.9;
     session.obey(1, stroke);
-    while (!session.waiting().empty()) REQUIRE(session.advance(true).empty());
+    while (!session.hands().waiting().empty()) REQUIRE(session.advance(true).empty());
   }
-  REQUIRE(session.strokes() == 20);
-  INFO(session.saved_bytes());
-  CHECK(session.saved_bytes() < 60'000'000);
+  REQUIRE(session.history().strokes() == 20);
+  INFO(session.history().bytes());
+  CHECK(session.history().bytes() < 60'000'000);
   for (std::size_t id = 20; id-- > 0;) {
     session.undo();
     std::ostringstream body;
     geo::write_body(body, session.run().body());
     REQUIRE(body.str() == states[id]);
   }
-  CHECK(session.undone() == 20);
-  CHECK(session.saved_bytes() < 100'000'000);
+  CHECK(session.history().undone() == 20);
+  CHECK(session.history().bytes() < 100'000'000);
 }
 
 // Strokes that reach the bottom of others leave fronts whose points coincide.
@@ -548,9 +548,9 @@ TEST_CASE("random hands: pages, recording and pieces agree", "[hands]") {
     for (int act = 0; act < 6; ++act) {
       switch (random() % 7) {
         case 0:
-          if (session.undone() > 0 && random() % 2 == 0)
+          if (session.history().undone() > 0 && random() % 2 == 0)
             session.redo();
-          else if (session.strokes() > 0)
+          else if (session.history().strokes() > 0)
             session.undo();
           break;
         case 1:

@@ -76,15 +76,13 @@ Handled handled(bool implicit) {
   frames(2);
   Blade blade;
   blade.points = {{-0.4, 0, 0}, {0.5, 0, 0}, {1.4, 0, 0}};
-  const std::size_t b = run.add_blade(blade);
-  run.extend_blade(b, 0, at({0.01, 0.51, 1.2}, 2));
+  auto knife = run.add_blade(blade, at({0.01, 0.51, 1.2}, 2));
   Pull pull = hook(500);
   pull.motion.keys.clear();
-  const std::size_t p = run.add_pull(pull);
-  run.extend_pull(p, 0, {0.5, 0.5, 1});
+  auto spring = run.add_pull(pull, {0.5, 0.5, 1});
   for (int i = 0; i < 5; ++i) {
-    run.extend_blade(b, 1, at({0.01 + 0.003 * i, 0.511 - 0.002 * i, 1.0 - 0.3 * i}, 2 + i));
-    run.extend_pull(p, 1, {0.5, 0.5 + 0.1 * i, 1 + 0.05 * i});
+    knife.drive_to(at({0.01 + 0.003 * i, 0.511 - 0.002 * i, 1.0 - 0.3 * i}, 2 + i));
+    spring.drive_to({0.5, 0.5 + 0.1 * i, 1 + 0.05 * i});
     if (i == 2) {
       SceneChange change;
       change.young = 2e4;
@@ -99,7 +97,7 @@ Handled handled(bool implicit) {
     }
     frames(1);
   }
-  run.end_grip(0);
+  run.grip(0).end();
   SceneChange change;
   change.accuracy = 5e-3;
   change.dt = 0.025;
@@ -156,7 +154,7 @@ TEST_CASE("a pin holds its nodes where they are, from its begin to its end", "[h
   Grip pin;
   pin.lo = {-1, -1, 0.6};
   pin.hi = {2, 2, 2};
-  const std::size_t grip = run.add_grip(pin);
+  auto grip = run.add_grip(pin);
   const auto held = [&](std::size_t i) { return run.body().nodes.position[i].z() >= 0.6; };
   const std::vector<Vec3> before = run.state().motion.displacement;
   for (int i = 0; i < 10; ++i) run.advance_frame();
@@ -166,7 +164,7 @@ TEST_CASE("a pin holds its nodes where they are, from its begin to its end", "[h
     moved |= !held(i) && run.state().motion.displacement[i] != before[i];
   }
   CHECK(moved);
-  run.end_grip(grip);
+  grip.end();
   run.advance_frame();
   for (std::size_t i = 0; i < before.size(); ++i) CHECK(run.state().motion.displacement[i] != before[i]);
 }
@@ -203,10 +201,8 @@ TEST_CASE("values change at their time", "[hands]") {
   CHECK_THROWS_AS(run.change({.friction = 2}), InputError);
   CHECK_THROWS_AS(run.add_pull({.point = {0, 0, 0}, .node = 1000000}), InputError);
   CHECK_THROWS_AS(run.add_blade({}), InputError);
-  CHECK_THROWS_AS(run.end_grip(7), std::out_of_range);
-  run.add_blade({.name = "b", .points = {{0, 0, 0}, {1, 0, 0}}});
-  run.extend_blade(0, 1, {});
-  CHECK_THROWS_AS(run.extend_blade(0, 1, {}), InputError);
+  CHECK_THROWS_AS(run.grip(7), std::out_of_range);
+  CHECK_THROWS_AS(run.blade(0), std::out_of_range);
 }
 
 TEST_CASE("a change of a run goes before the scene's later ones", "[hands]") {
@@ -232,24 +228,63 @@ TEST_CASE("a grip ends once, and blades and pulls with one key do not exist", "[
   const Scene scene = cube_scene();
   const TriangleMesh cube = make_block({1, 1, 1}, 0.25);
   Simulation run(scene, cube), other(scene, cube);
-  const std::size_t grip = run.add_grip({.lo = {-1, -1, 0.6}, .hi = {2, 2, 2}, .motion = {}});
-  run.end_grip(grip);
+  auto grip = run.add_grip({.lo = {-1, -1, 0.6}, .hi = {2, 2, 2}, .motion = {}});
+  grip.end();
   Blade wedge{.name = "b", .points = {{0, -1, 0}, {0, 2, 0}}, .motion = {}};
   wedge.back = {0, 0, 0.5};
   wedge.thickness = 0.3;
-  run.extend_blade(run.add_blade(wedge), 0, at({0.5, 0, 0.5}, 0));
-  run.extend_pull(run.add_pull({.point = {0.5, 0.5, 0.98}, .motion = {}}), 0, {0.5, 0.5, 3});
+  run.add_blade(wedge, at({0.5, 0, 0.5}, 0));
+  run.add_pull({.point = {0.5, 0.5, 0.98}, .motion = {}}, {0.5, 0.5, 3});
   for (int i = 0; i < 3; ++i) {
     run.advance_frame();
     other.advance_frame();
   }
-  run.end_grip(grip);
-  CHECK(run.scene().grips[grip].until == 0);
+  grip.end();
+  CHECK(run.scene().grips[grip.index()].until == 0);
   CHECK(run.state().motion.displacement == other.state().motion.displacement);
   const Scene recording = recording_of(scene, run);
   CHECK(recording.blades.empty());
   CHECK(recording.pulls.empty());
   CHECK(recording.grips.size() == 1);
+}
+
+TEST_CASE("what is driven keeps its keys up to now, and begins anew where it was removed", "[hands]") {
+  Scene scene = cube_scene();
+  scene.blades.push_back({.name = "b", .points = {{0, -1, 3}, {0, 2, 3}}});
+  Simulation run(scene, make_block({1, 1, 1}, 0.25));
+  auto blade = run.blade(0);
+  const auto x = [&] { return blade.pose().position.x(); };
+  const auto count = [&] { return blade.motion().keys.size(); };
+  CHECK(x() == 0);
+  blade.drive_to(at({9, 0, 0}, 0));
+  blade.drive_to(at({1, 0, 0}, 3));  // the last call of a frame counts
+  CHECK(count() == 2);
+  run.advance_frame();
+  CHECK(x() == 1);
+  blade.drive_to(at({3, 0, 0}, 5));
+  CHECK(count() == 3);
+  run.advance_frame();
+  CHECK(blade.motion().at(0.75 * run.state().time).position.x() == Approx(2));
+  run.advance_frame();
+  CHECK_FALSE(run.scene().blades[0].active(run.state().time));
+  CHECK(x() == 3);
+  blade.drive_to(at({4, 0, 0}, 5));
+  CHECK(count() == 2);
+  CHECK(x() == 3);
+  // A grip stays, and keeps all keys.
+  auto grip = run.add_grip({.lo = {-1, -1, 0.6}, .hi = {2, 2, 2}, .motion = {}});
+  grip.drive_to(at({0, 0, 0.1}, 0));
+  for (int i = 0; i < 3; ++i) run.advance_frame();
+  CHECK(grip.pose().position.z() == 0.1);
+  grip.drive_to(at({0, 0, 0.2}, 0));
+  CHECK(grip.motion().keys.size() == 4);
+  auto pull = run.add_pull({.point = {0.5, 0.5, 0.98}, .motion = {}}, {0.5, 0.5, 3});
+  for (int i = 0; i < 4; ++i) {
+    pull.drive_to({0.5, 0.5, 3});
+    run.advance_frame();
+  }
+  CHECK(pull.end() == Vec3(0.5, 0.5, 3));
+  CHECK(run.scene().pulls[pull.index()].motion.keys.size() == 2);
 }
 
 TEST_CASE("what hands did, given as a scene, gives the same run to the bit", "[hands]") {

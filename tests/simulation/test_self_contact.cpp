@@ -75,8 +75,8 @@ TEST_CASE("what a crack step needs of contact before it is made counts as contac
   std::optional<EmbeddingPlan> plan;
   auto front = begin_front(std::vector<Vec3>{{-0.3, -0.3, 0.52}, {-0.3, 1.3, 0.53}}, false, 1);
   const std::vector<Vec3> next{{0.6, -0.3, 0.5}, {0.6, 1.3, 0.51}};
-  CrackTransaction(body, front, next, {}, nullptr)
-      .commit(front, collisions.embedding_check(body, solid, state, plan, seconds));
+  CrackTransaction(body, advance_of(front, next, {}), nullptr)
+      .commit(collisions.embedding_check(body, solid, state, plan, seconds));
   CHECK(seconds > 0);
   CHECK(plan.has_value());
 }

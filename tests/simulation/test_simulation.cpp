@@ -220,20 +220,20 @@ TEST_CASE("a program can move blades, grips and obstacles from frame to frame") 
   blade.motion.keys = {{0, Vec3::Zero()}, {frames / scene.frame_rate, Vec3(0, 0, -1.5)}};
   scene.blades.push_back(blade);
   Simulation keyed(scene, make_block({1, 1, 1}, 0.25));
-  scene.blades[0].motion.keys = {{0, Vec3::Zero()}, {1 / scene.frame_rate, Vec3::Zero()}};
+  scene.blades[0].motion.keys.clear();
   Simulation steered(scene, make_block({1, 1, 1}, 0.25));
   for (int f = 1; f <= frames; ++f) {
     keyed.advance_frame();
     Pose pose;
     pose.position.z() = -1.5 * f / frames;
-    steered.move_blade(0, pose);
+    steered.blade(0).drive_to(pose);
     steered.advance_frame();
     CHECK((steered.scene().blades[0].motion.at(1e9).position - pose.position).norm() < 1e-15);
   }
   CHECK(find_pieces(steered.body().surface).count == 2);
   CHECK(find_pieces(keyed.body().surface).count == 2);
   // Without a call the blade is gone; a grip keeps its last pose.
-  steered.move_grip(0, {Vec3(0, 0, 0.1), Eigen::Quaterniond::Identity()});
+  steered.grip(0).drive_to({Vec3(0, 0, 0.1), Eigen::Quaterniond::Identity()});
   CHECK(steered.advance_frame().split.crack.triangles_cut == 0);
   CHECK(steered.advance_frame().fronts == 0);
   for (int extra = 0; extra < 2; ++extra) {
@@ -244,5 +244,5 @@ TEST_CASE("a program can move blades, grips and obstacles from frame to frame") 
     CHECK(highest < 1e-12);
     steered.advance_frame();
   }
-  CHECK_THROWS_AS(steered.move_obstacle(0, {}), std::out_of_range);
+  CHECK_THROWS_AS(steered.obstacle(0), std::out_of_range);
 }

@@ -101,9 +101,9 @@ std::string statistics_text(const Session& session, const Pace& pace) {
     edges.push_back(flat(edge));
     force.push_back(six(newtons));
   }
-  for (const geo::Vec3& p : session.pins()) pins.push_back(point(p));
+  for (const geo::Vec3& p : session.hands().pins()) pins.push_back(point(p));
   Json holds = Json::array();
-  for (const Session::Hold& h : session.holds())
+  for (const Hold& h : session.hands().holds())
     holds.push_back({{"id", h.number}, {"at", point(h.at)}, {"to", point(h.to)}});
   double pulled = 0;
   for (const geo::Vec3& f : session.stats().pull_force) pulled += f.norm();
@@ -119,12 +119,12 @@ std::string statistics_text(const Session& session, const Pace& pace) {
             {"newton", session.stats().newton},
             {"cut", session.has_cut()},
             {"paused", pace.paused},
-            {"undo", session.strokes()},
-            {"redo", session.undone()},
-            {"waiting", session.waiting()},
+            {"undo", session.history().strokes()},
+            {"redo", session.history().undone()},
+            {"waiting", session.hands().waiting()},
             {"holds", holds},
             {"message", pace.message},
-            {"stroke", session.last_stroke()},
+            {"stroke", session.hands().last_stroke()},
             {"pins", pins},
             {"edges", edges},
             {"set",

@@ -11,9 +11,13 @@
 
 #include <kerf/simulation.h>
 #include "live/command.h"
-#include "live/history.h"
+#include "live/hands.h"
 #include "live/pace.h"
+#include "live/piece_count.h"
+#include "live/scene_mark.h"
 #include "live/snapshot.h"
+#include "live/surface_view.h"
+#include "live/undo.h"
 #include "sim/setup.h"
 
 namespace live {
@@ -23,17 +27,18 @@ void adapt_scene(geo::Scene& scene, double rate, bool blades);
 
 /// Bounds on what a session keeps.
 struct SessionBounds {
-  std::size_t saved = 64;                 ///< states that undo can go back to
-  std::size_t saved_bytes = 250'000'000;  ///< of all states of undo and redo; one state may have more
-  std::size_t recorded = 4096;            ///< blades, springs and pins of the recording
-  std::size_t keys = 1 << 20;             ///< of their motions, when one more begins; a key is a frame of one of them
-  std::size_t changes = 1 << 16;          ///< of values, by hands and by effort
+  UndoBounds undo = {};           ///< states of strokes
+  std::size_t recorded = 4096;    ///< blades, springs and pins of the recording
+  std::size_t keys = 1 << 20;     ///< of their motions, when one more begins; a key is a frame of one of them
+  std::size_t changes = 1 << 16;  ///< of values, by hands and by effort
 };
 
 class Session {
  public:
   /// A new run. The scene is as adapt_scene() leaves it. Throws as begin_run().
   Session(const sim::Setup& setup, const geo::Progress& progress, const SessionBounds& bounds = {});
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
   /// Obeys a command of a page, between two frames. Throws BadMessage where it cannot be obeyed, or
   /// where the recording is full.
@@ -82,28 +87,14 @@ class Session {
   geo::Scene recording() const;
   /// Fills positions, topology and inputs taken.
   void show(Snapshot& snapshot);
-  /// Number of strokes that can be undone, and of those that can be made again.
-  std::size_t strokes() const { return saved_.size(); }
-  std::size_t undone() const { return undone_.size(); }
-  /// Bytes of the states that these go to.
-  std::size_t saved_bytes() const { return saved_states_.bytes() + undone_states_.bytes(); }
-  /// Numbers of the strokes whose edges are not yet where the pointer is or was.
-  std::vector<std::uint64_t> waiting() const;
-  /// Number of the last stroke that ended.
-  std::uint64_t last_stroke() const { return last_stroke_; }
+  /// The hands in the run.
+  const Hands& hands() const { return hands_; }
+  /// The strokes that can be undone and made again.
+  const StrokeHistory& history() const { return history_; }
   /// Crack steps refused since the run began.
   std::size_t refused() const { return run_.state().total.refused; }
   /// Number of pieces without specks; counted now and then while a blade cuts.
-  std::uint32_t pieces() const { return pieces_; }
-  /// World positions of pins that hold.
-  std::vector<geo::Vec3> pins() const;
-  /// A spring that stays: its number, and its ends in the world, as of the last show().
-  struct Hold {
-    std::uint64_t number;
-    geo::Vec3 at, to;
-  };
-  /// All springs that stay.
-  std::vector<Hold> holds() const;
+  std::uint32_t pieces() const { return pieces_.pieces(); }
   /// Whether weight is withheld.
   bool is_weightless() const { return withheld_.has_value(); }
   /// Gravity, also while it is withheld.
@@ -112,115 +103,33 @@ class Session {
   std::vector<std::pair<std::vector<geo::Vec3>, double>> edges() const;
 
  private:
-  using Hand = std::pair<ClientId, std::uint64_t>;  // a page and the number of its stroke
-  struct HeldBlade {
-    EdgePose now;
-    std::vector<EdgePose> path;  // poses that the edge has still to pass; the last one is the pointer's
-    double length = 0;
-    std::optional<double> above;         // of an edge that follows the surface: from its origin to there
-    geo::Vec3 back = geo::Vec3::Zero();  // unit, from the edge against its motion; zero before it has moved
-    std::optional<std::size_t> blade;    // added to the run when it moves first
-    std::uint32_t faces = 0;             // of the complex, when the blade was added
-    bool ends = false;
-    double late = 0;  // s since it was released
-  };
-  struct HeldPull {
-    std::size_t pull;
-    geo::Vec3 to;
-    geo::SurfaceVertexId nearest;  // to the point of the material that is held
-    std::uint64_t number = 0;      // of a spring that stays, while a hand has it, too
-    bool ends = false;
-  };
-  struct HeldPin {
-    std::size_t grip;
-    geo::Vec3 material, world;
-    double radius;
-  };
-  // All that hands have in a run.
-  struct InHands {
-    std::vector<int> checkpoints;
-    std::vector<HeldPin> pins;
-    std::map<std::uint64_t, HeldPull> holds;
-    std::optional<geo::Vec3> withheld;
-  };
-  // A run as it was before a stroke, with the numbers of all that was added up to then. Its body
-  // and motion are in the stack of states.
-  struct Saved {
-    double time;
-    int frame;
-    std::size_t blades, grips, pulls, changes;  // of the run; changes: by hands and effort
-    InHands hands;
-  };
-  // The parts of a scene that are not yet there in a saved state: by index, all that was added or
-  // has changed since; and the changes of values after the saved ones.
-  struct Removed {
-    std::map<std::size_t, geo::Blade> blades;
-    std::map<std::size_t, geo::Grip> grips;
-    std::map<std::size_t, geo::Pull> pulls;
-    std::vector<geo::SceneChange> changes;
-  };
-  // A stroke that was undone. Two states belong to it: the one before it, and the run before undo.
-  struct Undone {
-    Saved before;
-    Removed removed;
-    InHands hands;
-    int frame;
-  };
-
-  void save();
-  void drop_states();
-  InHands in_hands() const { return {checkpoints_, pins_, holds_, withheld_}; }
-  // The scene with what was there at a saved state, and what was removed from it.
-  std::pair<geo::Scene, Removed> scene_at(const Saved& saved) const;
-  // Continues with a scene from a state.
-  void resume(const geo::Scene& scene, const std::string& state, int frame, InHands hands);
-  // Goes to the last saved stroke, whose state is given.
-  void restore_last(const std::string& state);
+  void require_space() const;
+  HandMadeScene scene() const { return {setup_.scene, run_.scene(), changes_}; }
+  Beside beside() const { return {hands_.lasting(), checkpoints_, withheld_}; }
+  std::string state_bytes() const;
   // Changes values of the run. Throws InputError for values that a scene may not have.
   void change_run(geo::SceneChange change);
-  // Continues as `scene` from a checkpoint, without hands.
-  void go_on_from(const geo::Scene& scene, const std::string& checkpoint);
-  void begin_grab(const Hand& hand, const Grab& grab);
-  void require_space() const;
-  void require_free_hand() const;
-  void extend_hands(bool whole);
-  void chase(HeldBlade& held, bool whole) const;
-  void turn(HeldBlade& held, const EdgePose& before) const;
-  void add_blade(HeldBlade& held, const EdgePose& from);
+  // Goes to a state before a stroke.
+  void return_to(const BeforeStroke& before, const std::string& state);
+  // Continues with a scene from a checkpoint.
+  void resume(const geo::Scene& scene, const std::string& checkpoint, int frame, Beside beside);
   bool end_hands();
-  // Removes the state that was saved before this blade.
-  void forget_state(std::size_t blade);
-  void count_pieces();
-  geo::Vec3 material_point(const Spot& spot, geo::SurfaceVertexId& nearest) const;
-  geo::NodeId carrier_of(geo::SurfaceVertexId vertex) const;
-  geo::Vec3 world_point(const Spot& spot) const;
-  double pull_stiffness(std::uint32_t node) const;
 
   sim::Setup setup_;
   SessionBounds bounds_;
   std::string start_;  // checkpoint of frame 0
   geo::Simulation run_;
-  double mass_ = 0;
+  SurfaceView view_;
+  Hands hands_;
+  StrokeHistory history_;
+  PieceCount pieces_;
   geo::FrameStats stats_;
   bool has_cut_ = false;
-  std::uint32_t pieces_ = 1, counted_faces_ = 0, faces_ = 0;
-  int since_count_ = 0;
-  Slots slots_;
-  std::vector<geo::Vec3> positions_;  // per vertex slot, of the last show()
-  std::map<Hand, HeldBlade> blades_;
-  std::map<Hand, HeldPull> pulls_;
-  std::vector<HeldPin> pins_;
+  std::uint32_t faces_ = 0;  // of the complex
   std::map<ClientId, std::uint64_t> taken_;
   std::vector<geo::SceneChange> changes_;  // by hands and effort
-  StateStack saved_states_, undone_states_;
-  std::vector<Saved> saved_;
-  std::vector<Undone> undone_;
-  bool dropped_ = false;                     // states that undo could have gone back to
-  std::map<std::uint64_t, HeldPull> holds_;  // springs that stay, by their numbers
-  std::uint64_t last_hold_ = 0;
-  std::optional<geo::Vec3> withheld_;  // gravity that does not act yet
-  std::vector<int> checkpoints_;       // frames from which the run went on from its own checkpoint
-  std::uint64_t last_stroke_ = 0;
+  std::optional<geo::Vec3> withheld_;      // gravity that does not act yet
+  std::vector<int> checkpoints_;           // frames from which the run went on from its own checkpoint
 };
 
 }  // namespace live

@@ -75,9 +75,10 @@ struct BodyOptions {
 
 /// Builds graph, neighbours and binding (§ 6.1, 6.2, 6.5). Where the sampling is too coarse for a
 /// narrow passage, G has more components than there are pieces of material; nodes are added until
-/// both agree. Throws InputError for options out of range, no nodes, or a node outside the
-/// material.
-Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options = {}, const Progress& progress = {});
+/// both agree. `donors`, where given, receives for each node that was added the one whose material
+/// it takes. Throws InputError for options out of range, no nodes, or a node outside the material.
+Body build_body(Complex surface, NodeSet nodes, const BodyOptions& options = {}, const Progress& progress = {},
+                std::vector<NodeId>* donors = nullptr);
 
 /// The binding from scratch. Incremental updates equal it, bit for bit.
 Binding build_binding(const Body& body);

@@ -60,8 +60,23 @@ struct FrontState {
   std::int32_t crack = 0;                    ///< number of the crack behind this front; at least 1
   std::vector<Point> points;                 ///< the front points as given (or as displaced by a repeated attempt)
   std::vector<std::vector<Point>> segments;  ///< segments[i]: points[i], the contacts, points[i+1]
-  std::uint32_t step = 0;                    ///< how many time steps of its file this front has made
+  bool has_moved = false;                    ///< it has made a step, by advance()
+  std::uint32_t step = 0;                    ///< the steps of its file that it has made or passed over
   std::string name;
+};
+
+/// Numbers for new cracks of a complex. A front has its number before it has cut anything.
+class CrackNumbers {
+ public:
+  /// Above those of the cracks in a complex.
+  explicit CrackNumbers(const Complex& complex) : last_(complex.crack_count()) {}
+  /// A front has this number.
+  void note(std::int32_t crack) { last_ = crack > last_ ? crack : last_; }
+  /// The next free number, which is then taken.
+  std::int32_t next() { return ++last_; }
+
+ private:
+  std::int32_t last_;
 };
 
 /// Tolerances are relative to the diagonal of Complex::extent().

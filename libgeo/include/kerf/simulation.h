@@ -99,6 +99,8 @@ struct FrameStats {
   FrameStats& operator+=(const FrameStats& o);
   /// Seconds of all phases of cutting.
   double split_seconds() const;
+  /// Seconds of all phases.
+  double phase_seconds() const;
 };
 
 /// All that a run needs to continue, in addition to its body.
@@ -177,34 +179,31 @@ class Simulation {
   /// Interrupted where `progress` requests it.
   FrameStats advance_frame(const Progress& progress = {});
 
-  /// Moves a blade, grip or obstacle (by its index in the scene) from its present pose to `pose` by
-  /// the end of the next frame, in place of its keyframes. A blade cuts on its way; without further
-  /// calls it is removed after that frame, while grips and obstacles stay at `pose`. Poses are
-  /// relative as in the scene's motions. Throws std::out_of_range for an unknown index. Checkpoints
-  /// do not hold such motions: set them again after restore().
-  void move_blade(std::size_t blade, const Pose& pose);
-  /// See move_blade().
-  void move_grip(std::size_t grip, const Pose& pose);
-  /// See move_blade().
-  void move_obstacle(std::size_t obstacle, const Pose& pose);
+  class Handle;
+  class GripHandle;
+  class PullHandle;
+  /// The blade with this index in the scene. Throws std::out_of_range without one; so do the
+  /// others.
+  Handle blade(std::size_t index);
+  /// The obstacle with this index.
+  Handle obstacle(std::size_t index);
+  /// The grip with this index.
+  GripHandle grip(std::size_t index);
+  /// The pull with this index.
+  PullHandle pull(std::size_t index);
 
-  /// Adds a blade, as in a scene, and returns its index. A run of a scene that has had the blade
-  /// from the start gives the same frames, to the bit, if its first key is not earlier than the
-  /// present time. Throws InputError for fewer than two points.
-  std::size_t add_blade(Blade blade);
+  /// Adds a blade with the motion of a scene. A run of a scene that has had the blade from the
+  /// start gives the same frames, to the bit, if its first key is not earlier than the present
+  /// time. Throws InputError for fewer than two points, or three where it is closed.
+  Handle add_blade(Blade blade);
+  /// Adds a blade that is at `pose` now, and cuts once it is driven.
+  Handle add_blade(Blade blade, const Pose& pose);
   /// Adds a grip; see add_blade(). It holds nothing before the present time.
-  std::size_t add_grip(Grip grip);
+  GripHandle add_grip(Grip grip);
   /// Adds a pull; see add_blade(). Throws InputError for a node that does not exist.
-  std::size_t add_pull(Pull pull);
-  /// Appends a key to the motion of a blade, at the time of a frame: 0 is the present one, 1 the
-  /// next. Unlike move_blade(), it keeps the keys before it. Throws std::out_of_range for an
-  /// unknown index, InputError where the blade has a key then or later.
-  void extend_blade(std::size_t blade, int frame, const Pose& pose);
-  /// The same for a pull, whose keys are positions.
-  void extend_pull(std::size_t pull, int frame, const Vec3& position);
-  /// Ends a grip at the present time, if it has not ended yet. Throws std::out_of_range for an
-  /// unknown index.
-  void end_grip(std::size_t grip);
+  PullHandle add_pull(Pull pull);
+  /// Adds a pull whose other end is here now, world, and which pulls once it is driven.
+  PullHandle add_pull(Pull pull, const Vec3& end);
   /// Changes values from the present time on, up to the scene's next change of the same value;
   /// change.time is set to it. Throws InputError for values that a scene may not have.
   void change(SceneChange change);
@@ -229,10 +228,70 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The scene that a run began with, and all that was added, extended and changed since. A run of it
+/// A blade, grip or obstacle of a run, which a program may move between two frames. Valid as long
+/// as the run; copies are the same object. Checkpoints do not hold motions: drive it again after
+/// Simulation::restore() of a new run.
+class Simulation::Handle {
+ public:
+  /// The kinds of objects that move.
+  enum class Kind { blade, grip, obstacle };
+  /// For Simulation alone.
+  Handle(Impl& run, Kind kind, std::size_t index);
+
+  /// Its index in the scene.
+  std::size_t index() const { return index_; }
+  /// Its motion, with all that drive_to() has added.
+  const Motion& motion() const;
+  /// Where it is now, relative as in the scene's motions.
+  Pose pose() const;
+  /// Moves it from there straight to `pose` by the end of the next frame. Its keys up to now stay,
+  /// later ones go, also those of a call before in the same frame. A blade cuts on its way. Unless
+  /// it is driven on, it is removed after that frame, while grips and obstacles stay at `pose`. A
+  /// blade that was removed begins anew where it was.
+  void drive_to(const Pose& pose);
+
+ protected:
+  /// The run.
+  Impl& run() const { return *run_; }
+
+ private:
+  Impl* run_;
+  Kind kind_;
+  std::size_t index_;
+};
+
+/// A grip of a run.
+class Simulation::GripHandle : public Handle {
+ public:
+  /// For Simulation alone.
+  GripHandle(Impl& run, std::size_t index) : Handle(run, Kind::grip, index) {}
+  /// Lets go at the present time, if it has not yet.
+  void end();
+};
+
+/// A pull of a run.
+class Simulation::PullHandle {
+ public:
+  /// For Simulation alone.
+  PullHandle(Impl& run, std::size_t index);
+  /// Its index in the scene.
+  std::size_t index() const { return index_; }
+  /// Where the end is now that is not in the material, world.
+  Vec3 end() const;
+  /// Moves that end from there straight to `position` by the end of the next frame, as
+  /// Handle::drive_to() does with a blade.
+  void drive_to(const Vec3& position);
+
+ private:
+  Impl* run_;
+  std::size_t index_;
+};
+
+/// The scene that a run began with, and all that was added, driven and changed since. A run of it
 /// has the same frames, to the bit, if it goes on from a checkpoint after the same frames
 /// (Scene::checkpoints). Blades and pulls with fewer than two keys, which have not existed, are
-/// left out. Not for runs in which move_blade() and the like have replaced keyframes.
+/// left out. Not for runs that have driven blades which were removed, or objects off their
+/// keyframes.
 Scene recording_of(const Scene& original, const Simulation& run);
 
 }  // namespace geo

@@ -1,0 +1,59 @@
+// Grips come first: nodes that they hold are where they will be at the step's end. Potentials
+// follow in a fixed order, wedges before pulls.
+#include "simulation/node_loads.h"
+
+namespace geo {
+
+NodeLoads::NodeLoads(const Scene& scene, const Body& body) : scene_(scene), body_(body) { follow_scene(); }
+
+void NodeLoads::follow_scene() {
+  is_behind_ = false;
+  environment_.gravity = scene_.gravity;
+  environment_.fixed.assign(body_.nodes.size(), 0);
+  gripped_ = GrippedNodes(scene_.grips, body_.nodes);
+}
+
+void NodeLoads::follow_crack() {
+  is_behind_ = true;
+  pulls_.invalidate();
+}
+
+void NodeLoads::begin_step(const TimeStep& step, const Solid& solid, State& motion) {
+  if (is_behind_) follow_scene();
+  gripped_.place(scene_.grips, body_.nodes, step.end, environment_.fixed, motion);
+  environment_.contact.clear();
+  add_wedges(step.begin, solid, motion);
+  pulls_.begin_step(scene_.pulls, body_, solid, step.begin, step.end);
+  if (!wedges_.empty()) environment_.contact.push_back(&wedges_);
+  if (!pulls_.empty()) environment_.contact.push_back(&pulls_);
+}
+
+// The wedges of thick blades are where their cut is: the edge cuts on at the end of the step.
+void NodeLoads::add_wedges(double time, const Solid& solid, const State& motion) {
+  wedges_ = {};
+  const BladeNodes nodes{body_.nodes.position, motion.displacement, body_.nodes.radius,
+                         [&](std::size_t i) { return surface_distance(body_, NodeId(i)); },
+                         [&](std::size_t i) { return solid.mass(NodeId(i)); }};
+  for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
+    const Blade& blade = scene_.blades[b];
+    if (!(blade.thickness > 0) || !blade.active(time)) continue;
+    const BladeWedge wedge{.edge = blade.at(time),
+                           .closed = blade.closed,
+                           .back = blade.motion.at(time).rotation * blade.back,
+                           .thickness = blade.thickness,
+                           .stiffness = blade.stiffness};
+    wedges_.add(b, wedge, nodes);
+  }
+}
+
+void NodeLoads::end_step(const TimeStep& step, double share, State& motion, FrameStats& stats) {
+  gripped_.set_velocities(scene_.grips, body_.nodes, step.begin, step.end, motion);
+  stats.blade_force.resize(scene_.blades.size(), Vec3::Zero());
+  const auto on_blades = wedges_.reaction(motion.displacement, scene_.blades.size());
+  for (std::size_t b = 0; b < on_blades.size(); ++b) stats.blade_force[b] += share * on_blades[b];
+  stats.pull_force.resize(scene_.pulls.size(), Vec3::Zero());
+  const auto on_pulls = pulls_.reaction(motion.displacement, scene_.pulls.size());
+  for (std::size_t p = 0; p < on_pulls.size(); ++p) stats.pull_force[p] += share * on_pulls[p];
+}
+
+}  // namespace geo

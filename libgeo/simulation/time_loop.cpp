@@ -1,0 +1,235 @@
+// Each phase begins with the scope that counts its seconds. Phases that read the same data run
+// beside each other.
+#include "simulation/time_loop.h"
+
+#include <string>
+#include <utility>
+
+#include "kerf/error.h"
+#include "kerf/parallel.h"
+#include "simulation/fracture_step.h"
+#include "simulation/scene_body.h"
+#include "simulation/timed.h"
+
+namespace geo {
+namespace {
+
+// A sheet snaps to vertices and edges nearer than this, in spacings of the finest nodes: a
+// twentieth of what a front deviates from its blade's edge (edge_runs.cpp), and far above the
+// slivers that weights of nodes fold.
+constexpr double snap_spacings = 0.001;
+
+CrackOptions crack_options(const Scene& scene, const Body& body) {
+  CrackOptions options;
+  options.seed = scene.seed;
+  options.snap_edges = snap_spacings * body.finest_spacing / body.surface.extent().diagonal();
+  return options;
+}
+
+void require_finite(const RunState& state) {
+  for (std::size_t i = 0; i < state.motion.displacement.size(); ++i)
+    if (!state.motion.displacement[i].allFinite())
+      throw GeometryError("node " + std::to_string(i) + " has left all bounds at time " + std::to_string(state.time) +
+                          "; reduce the time step");
+}
+
+// The work that weight would do on the way back to rest, J.
+double weight_energy(const Solid& solid, const Vec3& gravity, const std::vector<Vec3>& displacement) {
+  double energy = 0;
+  for (std::uint32_t i = 0; i < displacement.size(); ++i)
+    energy -= solid.mass(NodeId(i)) * gravity.dot(displacement[i]);
+  return energy;
+}
+
+}  // namespace
+
+TimeLoop::TimeLoop(RunData& run)
+    : run_(run),
+      obstacles_(run.scene),
+      loads_(run.scene, run.body),
+      collisions_(run.scene, run.body, run.solid.nodes(), run.state.surface),
+      writer_(
+          run.body, run.state.body_index, crack_options(run.scene, run.body),
+          CrackFollowers{
+              .solid = run.solid, .motion = run.state.motion, .way = way_, .collisions = collisions_, .loads = loads_}),
+      cuts_(run.scene, run.body, run.state, writer_),
+      bonds_(run.body, run.state, writer_) {
+  hold_material(run.state.time);
+  apply_changes(run.state.time);
+}
+
+// Applies the changes of the scene's values that are due.
+void TimeLoop::apply_changes(double time) {
+  if (!run_.changes.apply(run_.scene, time)) return;
+  run_.solid.set_materials(materials_of(run_.scene, run_.state.body_index));
+  collisions_.set_friction(run_.scene.contact.friction);
+  loads_.follow_scene();
+}
+
+FrameStats TimeLoop::advance_frame(const Progress& progress) {
+  Scene& scene = run_.scene;
+  RunState& state = run_.state;
+  FrameStats stats;
+  apply_changes(state.frame * (1 / scene.frame_rate));
+  const double frame_time = 1 / scene.frame_rate;
+  const int steps = scene.steps_per_frame();
+  const auto time = [&](int s) { return (state.frame + double(s) / steps) * frame_time; };
+  for (int s = 0; s < steps; ++s) {
+    report(progress, "", static_cast<std::size_t>(s), static_cast<std::size_t>(steps));
+    step({.begin = time(s), .end = time(s + 1), .dt = frame_time / steps}, stats);
+  }
+  ++state.frame;
+  state.surface = collisions_.living_positions(run_.body);
+  stats.sheet.crumbs = writer_.crumbs();
+  stats.kinetic = run_.solid.nodes().kinetic_energy(state.motion);
+  stats.weight = weight_energy(run_.solid.nodes(), scene.gravity, state.motion.displacement);
+  state.total += stats;
+  return stats;
+}
+
+void TimeLoop::step(const TimeStep& step, FrameStats& stats) {
+  run_.state.time = step.begin;
+  apply_changes(step.begin);
+  const std::vector<Vec3> before = run_.state.motion.displacement;
+  loads_.begin_step(step, run_.solid.nodes(), run_.state.motion);
+  std::optional<ContactStep> contact = begin_contact(step, stats);
+  move_nodes(step, stats);
+  move_surface(step, std::move(contact), before, stats);
+  run_.state.time = step.end;
+  cut(step, stats);
+  grow_cracks(step.dt, stats);
+  break_bonds(stats);
+  require_finite(run_.state);
+}
+
+// Adds obstacles and self-contact to the loads. The result owns the potential of self-contact.
+// Contact needs the nodes of the solid, not its points, which are brought up to date beside it.
+std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameStats& stats) {
+  const TimedRest rest(stats, &FrameStats::mechanics_seconds);
+  std::optional<ContactStep> contact;
+  const Solid& nodes = run_.solid.nodes();
+  const State& motion = run_.state.motion;
+  const auto begin = [&] {
+    const Timed timed(stats.contact_seconds);
+    if (obstacles_.any()) {
+      collisions_.update_weights(run_.body, nodes);
+      obstacles_.add_potentials({.scene = run_.scene,
+                                 .body = run_.body,
+                                 .solid = nodes,
+                                 .weights = collisions_.weights(),
+                                 .surface = collisions_.targets(motion),
+                                 .motion = motion,
+                                 .time = step.begin,
+                                 .dt = step.dt},
+                                loads_.environment());
+    }
+    contact = collisions_.begin_step(run_.body, nodes, motion, step.dt, loads_.environment());
+  };
+  parallel_invoke([&] { run_.solid.whole(); }, begin);
+  return contact;
+}
+
+void TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
+  const Timed timed(stats.mechanics_seconds);
+  const Scene& scene = run_.scene;
+  State& motion = run_.state.motion;
+  hold_material(step.end);
+  Solid& solid = run_.solid.whole();
+  const Environment& environment = loads_.environment();
+  const StepReport report = scene.implicit ? solid.step_implicit(motion, step.dt, environment, scene.accuracy)
+                                           : solid.step_explicit(motion, step.dt, environment);
+  const double share = step.dt * scene.frame_rate;
+  loads_.end_step(step, share, motion, stats);
+  obstacles_.add_reactions(motion, share, stats);
+  stats.newton += static_cast<std::size_t>(report.newton);
+  stats.cg += static_cast<std::size_t>(report.cg);
+  ++stats.steps;
+  stats.energy = report.energy;
+}
+
+// In the boxes of the grips at a time.
+void TimeLoop::hold_material(double time) {
+  run_.solid.whole().hold(run_.body, GrippedNodes::boxes(run_.scene.grips, time));
+}
+
+// Moves the surface after the nodes, without crossings. `before`: displacements of the nodes at the
+// beginning of the step. Implicit steps end here for the nodes, which a crack that begins does not
+// change either: both run beside each other. Impulses of explicit steps still change the nodes.
+void TimeLoop::move_surface(const TimeStep& step, std::optional<ContactStep> contact, const std::vector<Vec3>& before,
+                            FrameStats& stats) {
+  State& motion = run_.state.motion;
+  const auto follow_nodes = [&] {
+    const Timed timed(stats.contact_seconds);
+    stats.contact += collisions_.finish_step(std::move(contact), run_.body, run_.solid.nodes(), before, step.dt,
+                                             loads_.environment(), motion);
+  };
+  cuts_.drop_idle(step.begin);
+  if (!cuts_.any_at(step.begin)) return follow_nodes();
+  if (!run_.scene.implicit) {
+    follow_nodes();
+    way_ = NodeWay(before, motion.displacement);
+    return;
+  }
+  const TimedRest rest(stats, &FrameStats::front_seconds);
+  way_ = NodeWay(before, motion.displacement);
+  parallel_invoke([&] { cuts_.begin_first(moved_body(step), stats); }, follow_nodes);
+}
+
+// Cuts by blades.
+void TimeLoop::cut(const TimeStep& step, FrameStats& stats) {
+  if (!cuts_.any_at(step.begin)) return;
+  {
+    const TimedRest rest(stats, &FrameStats::front_seconds);
+    cuts_.make_all(moved_body(step), stats);
+    way_ = NodeWay();
+  }
+  if (run_.state.motion.plastic.empty()) return;
+  const Timed timed(stats.mechanics_seconds);
+  run_.solid.whole();  // plastic strains are of points
+}
+
+MovedBody TimeLoop::moved_body(const TimeStep& step) const {
+  return {.body = run_.body,
+          .solid = run_.solid.nodes(),
+          .motion = run_.state.motion,
+          .way = way_,
+          .begin = step.begin,
+          .end = step.end};
+}
+
+// Starts and grows cracks by stress, which is of the solid's points.
+void TimeLoop::grow_cracks(double dt, FrameStats& stats) {
+  if (!run_.scene.fracture.on || run_.state.time < run_.scene.fracture.start) return;
+  const TimedRest rest(stats, &FrameStats::fracture_seconds);
+  const auto bring_up_to_date = [&]() -> const Solid& {
+    const Timed timed(stats.mechanics_seconds);
+    return run_.solid.whole();
+  };
+  const auto split = [&](FrontState& front, const std::vector<Vec3>& next) {
+    std::optional<WrittenCrack> written = writer_.write(front, next, stats);
+    if (!written) return false;
+    front = std::move(written->front);
+    bring_up_to_date();
+    return true;
+  };
+  step_fracture({.options = run_.scene.fracture,
+                 .body_index = run_.state.body_index,
+                 .body = run_.body,
+                 .solid = bring_up_to_date(),
+                 .motion = run_.state.motion,
+                 .dt = dt},
+                run_.state.fracture, split, &stats.fracture);
+}
+
+// Opens glued walls whose load is too high. Stress is of the solid's points.
+void TimeLoop::break_bonds(FrameStats& stats) {
+  if (!bonds_.any_left()) return;
+  const TimedRest rest(stats, &FrameStats::fracture_seconds);
+  const auto solid = [&]() -> const Solid& {
+    const Timed timed(stats.mechanics_seconds);
+    return run_.solid.whole();
+  };
+  bonds_.step(solid(), run_.scene.contact.friction, stats);
+}
+
+}  // namespace geo

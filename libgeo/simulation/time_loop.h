@@ -1,0 +1,57 @@
+// The loop over time steps: nodes move, the surface follows, blades cut, cracks grow by stress and
+// glued bonds break.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "kerf/progress.h"
+#include "kerf/simulation.h"
+#include "simulation/blade_cuts.h"
+#include "simulation/bond_breaker.h"
+#include "simulation/collisions.h"
+#include "simulation/crack_writer.h"
+#include "simulation/node_loads.h"
+#include "simulation/obstacles.h"
+#include "simulation/run_data.h"
+
+namespace geo {
+
+/// Computes frames of a run. Refers to the run, and alone changes its body. After
+/// RunData::restore() a new loop takes its place.
+class TimeLoop {
+ public:
+  /// Goes on from the run's time. Throws InputError where the run's surface does not fit its body.
+  explicit TimeLoop(RunData& run);
+
+  /// See Simulation::advance_frame().
+  FrameStats advance_frame(const Progress& progress);
+  /// The scene's list of grips has changed.
+  void follow_grips() { loads_.follow_scene(); }
+  /// The deformed surface.
+  const Collisions& collisions() const { return collisions_; }
+
+ private:
+  void apply_changes(double time);
+  void step(const TimeStep& step, FrameStats& stats);
+  std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);
+  void move_nodes(const TimeStep& step, FrameStats& stats);
+  void move_surface(const TimeStep& step, std::optional<ContactStep> contact, const std::vector<Vec3>& before,
+                    FrameStats& stats);
+  void cut(const TimeStep& step, FrameStats& stats);
+  void grow_cracks(double dt, FrameStats& stats);
+  void break_bonds(FrameStats& stats);
+  void hold_material(double time);
+  MovedBody moved_body(const TimeStep& step) const;
+
+  RunData& run_;
+  Obstacles obstacles_;
+  NodeLoads loads_;
+  Collisions collisions_;
+  NodeWay way_;  // of this time step, while blades cut
+  CrackWriter writer_;
+  BladeCuts cuts_;
+  BondBreaker bonds_;
+};
+
+}  // namespace geo

@@ -6,6 +6,7 @@
 #include <kerf/crack.h>
 #include <kerf/files.h>
 #include <kerf/mesh.h>
+#include <kerf/repair.h>
 #include "model.h"
 #include "tool.h"
 

@@ -61,7 +61,7 @@ std::vector<Guide> all_guides(const Body& body) {
 GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   GuideChange change;
   if (body.guide_spacing == 0) return change;
-  const GuideSet& guides = body.graph.storage().guides();
+  const GuideSet& guides = GraphStorage::of(body.graph).guides();
   // A guide stands at spacing / 64 < radius / 64 from its edge (guide_placement.cpp). A crack face
   // that near has cut the edge.
   std::vector<std::uint32_t> near, others;

@@ -1,4 +1,4 @@
-// read_volume(), wrapped(), wrapped_solid() and write_level_set() of kerf/files.h. Through OpenVDB:
+// read_volume() and write_level_set() of kerf/files.h, wrapped() of kerf/repair.h. Through OpenVDB:
 // volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set from a closed
 // surface, meshToUnsignedDistanceField() distances from open sheets.
 #include "kerf/files.h"
@@ -22,6 +22,7 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
+#include "kerf/repair.h"
 #include "surface/shells.h"
 
 namespace geo {

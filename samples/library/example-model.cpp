@@ -5,6 +5,7 @@
 #include <kerf/check.h>
 #include <kerf/files.h>
 #include <kerf/mesh.h>
+#include <kerf/repair.h>
 
 int main() {
   {

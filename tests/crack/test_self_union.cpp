@@ -7,6 +7,7 @@
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 

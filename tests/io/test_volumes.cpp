@@ -13,6 +13,7 @@
 #include "kerf/files.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 

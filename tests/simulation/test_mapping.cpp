@@ -47,7 +47,7 @@ struct Deformed {
   Body body = block();
   Solid solid{body.nodes, body.graph, {}};
   std::vector<Vec3> u;
-  LazyNodalGradients gradient = lazy_gradients(solid.discretisation(), u);
+  LazyNodalGradients gradient = lazy_gradients(SolidDiscretisation::of(solid), u);
   explicit Deformed(const Map& to = bent) {
     for (const Vec3& x : body.nodes.position) u.push_back(to(x) - x);
   }
@@ -145,7 +145,7 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
     set_threads(0);
     std::size_t within = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const LazyNodalGradients fresh = lazy_gradients(b.solid.discretisation(), b.u);
+      const LazyNodalGradients fresh = lazy_gradients(SolidDiscretisation::of(b.solid), b.u);
       const InverseDeformation::Location alone = InverseDeformation(b.body, b.u, fresh, all).to_material(points[i]);
       CHECK(found[i].position == alone.position);
       CHECK(found[i].nearest == alone.nearest);

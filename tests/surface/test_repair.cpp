@@ -5,6 +5,7 @@
 #include "cases.h"
 #include "kerf/check.h"
 #include "kerf/mesh.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 

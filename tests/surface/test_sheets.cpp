@@ -4,6 +4,7 @@
 
 #include "kerf/check.h"
 #include "kerf/mesh.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 

@@ -10,6 +10,7 @@
 #include "kerf/complex.h"
 #include "kerf/error.h"
 #include "kerf/mesh.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 

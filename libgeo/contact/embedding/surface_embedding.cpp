@@ -43,7 +43,9 @@ Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Ve
 class SurfaceEmbedder {
  public:
   explicit SurfaceEmbedder(const EmbeddingInput& input)
-      : in_(input), k_(input.after), gradient_(lazy_gradients(input.solid.discretisation(), input.state.displacement)) {
+      : in_(input),
+        k_(input.after),
+        gradient_(lazy_gradients(SolidDiscretisation::of(input.solid), input.state.displacement)) {
     result_.surface = updated_contact_surface(in_.before, k_, in_.crack);
     result_.positions = in_.positions;
     result_.positions.resize(result_.surface.site.size(), Vec3::Zero());

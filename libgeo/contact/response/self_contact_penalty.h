@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact/response/relative_stencil.h"
+#include "kerf/potential.h"
 #include "mechanics/terms/contact_law.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 

@@ -11,12 +11,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "kerf/check.h"
 #include "kerf/complex.h"
 #include "kerf/mesh.h"
 #include "kerf/progress.h"
@@ -120,36 +118,6 @@ CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> ne
 /// attempt passes the guard; `complex` is then unchanged.
 CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack,
                         const CrackOptions& options = {}, CrackStats* stats = nullptr);
-
-// ---- Solids from surfaces that cross themselves
-
-/// Statistics of self_union().
-struct SelfUnionStats {
-  std::size_t cells = 0;          ///< regions that the triangles enclose
-  std::size_t removed_faces = 0;  ///< faces with material, or air, on both sides
-};
-
-/// The boundary of the points where the generalized winding number of `mesh` exceeds a half
-/// (Jacobson, Kavan and Sorkine-Hornung 2013): one solid of parts that overlap, touch, cross
-/// themselves or have walls inside. Any triangles will do, but open parts enclose nothing: fill
-/// their holes first, see repair(). Triangles that cross nothing keep their vertices bit for bit;
-/// attributes are interpolated over the triangles that contain the result's. Parts of the result
-/// that touch in vertices or edges alone are moved apart there, by at most 2⁻¹² of an edge.
-///
-/// Throws InputError as insert_sheet() and for a mesh without triangles, GeometryError as
-/// insert_sheet(), where nothing is enclosed, and where touching parts cannot be moved apart.
-TriangleMesh self_union(const TriangleMesh& mesh, const CrackOptions& options = {}, SelfUnionStats* stats = nullptr);
-
-/// The changes that repaired_solid() made.
-struct SolidRepairStats {
-  RepairStats repair;
-  std::optional<SelfUnionStats> united;  ///< where triangles crossed, or edges had more than two
-};
-
-/// A valid model of a plain mesh (no sites): repair() with these options, then, where the result
-/// is no solid, self_union(). Throws InputError where triangles bound nothing, else as
-/// self_union().
-TriangleMesh repaired_solid(TriangleMesh mesh, const RepairOptions& options = {}, SolidRepairStats* stats = nullptr);
 
 // ---- Local edits of a crack complex (§ 5.2, § 8's first limitation). Each is guarded: K never
 // intersects itself and S_A stays closed. Vertices stay on all that they lie on: the skin as given,

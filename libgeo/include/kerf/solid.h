@@ -14,13 +14,13 @@
 #include "kerf/indirect.h"
 #include "kerf/material.h"
 #include "kerf/nodes.h"
+#include "kerf/potential.h"
 #include "kerf/vec.h"
 
 namespace geo {
 
-class Potential;
-struct SolidDiscretisation;
-struct SolverCache;
+struct SolidDiscretisation;  // private: nodes, material points, subdomains
+struct SolverCache;          // private: inverses of the last step
 
 // ---- The motion, and what acts on it from outside
 
@@ -39,7 +39,7 @@ struct Environment {
   Vec3 gravity = {0, 0, -9.81};     ///< acceleration, m/s²
   std::vector<std::uint8_t> fixed;  ///< per node: 1 clamps it; empty: no node is clamped
   std::vector<Vec3> load;           ///< per node: a force, N; empty: none
-  std::vector<Potential*> contact;  ///< contact potentials, not owned; empty: no contact
+  std::vector<Potential*> contact;  ///< further energies, such as contact, springs, wind; not owned
 };
 
 // ---- The solid
@@ -147,10 +147,8 @@ class Solid {
   /// Kinetic energy, J.
   double kinetic_energy(const State& state) const;
 
-  /// The discretisation itself; its type is private to the library.
-  const SolidDiscretisation& discretisation() const { return *discretisation_; }
-
  private:
+  friend struct SolidDiscretisation;  // it alone reaches itself, for the library's own code
   Indirect<SolidDiscretisation> discretisation_;
   Indirect<SolverCache> cache_;
 };

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "kerf/potential.h"
 #include "kerf/solid.h"
 #include "mechanics/solver/debris.h"
 #include "mechanics/solver/fixed_nodes.h"
 #include "mechanics/solver/solid_discretisation.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 namespace {

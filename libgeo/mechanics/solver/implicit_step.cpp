@@ -1,12 +1,12 @@
 // Solid::step_implicit() of kerf/solid.h. The implicit time step: backward Euler, with steps halved
 // where Newton's method does not converge.
 #include "kerf/parallel.h"
+#include "kerf/potential.h"
 #include "kerf/solid.h"
 #include "mechanics/solver/debris.h"
 #include "mechanics/solver/elastic_potential.h"
 #include "mechanics/solver/newton_solver.h"
 #include "mechanics/solver/solver_cache.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 namespace {

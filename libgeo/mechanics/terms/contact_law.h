@@ -20,7 +20,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "mechanics/terms/potential.h"
+#include "kerf/potential.h"
 
 namespace geo {
 

@@ -28,7 +28,7 @@ TEST_CASE("aggregates are connected sets of nodes of one component, of bounded s
     FrontState front = begin_front(std::vector<Vec3>{a, b}, false, 1);
     split(body, front, {a - Vec3(0, 0, deep), b - Vec3(0, 0, deep)});
     const Solid owner(body, Material());
-    const SolidDiscretisation& solid = owner.discretisation();
+    const SolidDiscretisation& solid = SolidDiscretisation::of(owner);
     const Aggregates::Size bounds{10 + random.below(60), 4 + random.below(60)};
     const Aggregates aggregates(solid.position, solid.mls, solid.component, solid.components, bounds);
     REQUIRE(aggregates.of.size() == solid.size());

@@ -39,12 +39,12 @@ namespace {
 
 struct Arrays {
   const Body& body;
-  TriangleMesh mesh;
-  std::vector<std::uint32_t> rows;  // of the mesh, by surface vertex
-  std::vector<std::uint32_t> master_node, master, parent, closest;
-  std::vector<std::array<std::uint32_t, 2>> guide_edges;
-  std::vector<std::uint8_t> about;
-  std::vector<KerfArray> all;
+  TriangleMesh mesh = {};
+  std::vector<std::uint32_t> rows = {};  // of the mesh, by surface vertex
+  std::vector<std::uint32_t> master_node = {}, master = {}, parent = {}, closest = {};
+  std::vector<std::array<std::uint32_t, 2>> guide_edges = {};
+  std::vector<std::uint8_t> about = {};
+  std::vector<KerfArray> all = {};
   template <class T>
   void add(const std::string& name, std::span<const T> values, std::uint64_t columns = 1) {
     all.push_back(kerf_array(name, values, columns));
@@ -262,7 +262,8 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
       if (AdjacencyRow::has_path(entry.first)) paths.push_back(entry.second);
     }
   }
-  GraphStorage::of(body.graph) = GraphStorage::from_arrays(nodes, unit, {count, to, bits, paths});
+  GraphStorage::of(body.graph) =
+      GraphStorage::from_arrays(nodes, unit, {.count = count, .to = to, .bits = bits, .paths = paths});
 }
 
 std::vector<Guide> read_guides(const KerfFile& in, std::vector<std::array<std::uint32_t, 2>>& edges) {
@@ -330,8 +331,10 @@ void read_about(const KerfFile& in, Body& body) {
     body.original_nodes = about.contains("sampled") ? json_integer<std::uint32_t>(about.at("sampled"))
                                                     : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))
-      body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(),
-                              p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
+      body.history.push_back({.tool = p.at("tool").get<std::string>(),
+                              .version = p.at("version").get<std::string>(),
+                              .arguments = p.at("arguments").get<std::string>(),
+                              .inputs = p.at("inputs").get<std::vector<std::string>>()});
   } catch (const nlohmann::json::exception&) {
     in.fail("section 'about' is malformed");
   } catch (const std::out_of_range&) {
@@ -352,14 +355,14 @@ void read_about(const KerfFile& in, Body& body) {
 void write_body(std::ostream& out, const Body& body) { write_body_with(out, body, {}); }
 
 void write_body_with(std::ostream& out, const Body& body, const std::vector<KerfArray>& more) {
-  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  Arrays a{.body = body};
   add_all(a);
   a.all.insert(a.all.end(), more.begin(), more.end());
   write_kerf(out, a.all);
 }
 
 std::uint64_t write_body(KerfUpdate& file, const Body& body) {
-  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  Arrays a{.body = body};
   add_all(a);
   return UpdatedFile::of(file).commit(a.all);
 }

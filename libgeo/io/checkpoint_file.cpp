@@ -142,8 +142,9 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
   const std::vector<Vec3> plastic = columns_of(state.motion.plastic), rotation = columns_of(state.motion.rotation);
   if (!plastic.empty()) more.push_back(kerf_array("run/plastic", coordinates(plastic), 3));
   if (!rotation.empty()) more.push_back(kerf_array("run/rotation", coordinates(rotation), 3));
-  more.push_back(
-      {"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
+  more.push_back({.name = "run/about", .dtype = "json", .shape = {text.size()}, .fill = [&text](KerfSink& sink) {
+                    sink.write(std::as_bytes(std::span(text)));
+                  }});
   write_body_with(out, body, more);
 }
 

@@ -375,7 +375,9 @@ void write_compacted(std::ostream& out, const KerfFile& file) {
   for (const auto& [name, section] : file.sections())
     if (kerf::size_of(section.dtype) != 0)
       arrays.push_back(
-          {name, section.dtype, section.shape, [&file, key = name](KerfSink& sink) { file.stream(key, into(sink)); }});
+          {.name = name, .dtype = section.dtype, .shape = section.shape, .fill = [&file, key = name](KerfSink& sink) {
+             file.stream(key, into(sink));
+           }});
   write_kerf(out, arrays);
 }
 

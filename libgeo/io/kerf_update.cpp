@@ -39,7 +39,7 @@ std::vector<std::byte> all_of(const KerfArray& array) {
 // differ.
 kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::uint64_t hash, const KerfFile& file) {
   const KerfFile::Section& old = file.sections().at(array.name);
-  kerf::Stored s{array, {}, 0, hash};
+  kerf::Stored s{.array = array, .runs = {}, .literal_rows = 0, .hash = hash};
   const std::uint64_t width = kerf::row_bytes(array.dtype, array.shape);
   const bool comparable = !array.shape.empty() && array.dtype == old.dtype && array.shape.size() == old.shape.size() &&
                           std::equal(array.shape.begin() + 1, array.shape.end(), old.shape.begin() + 1);
@@ -121,7 +121,7 @@ std::vector<kerf::Stored> UpdatedFile::changes(const std::vector<KerfArray>& arr
   for (const auto& array : arrays) {
     const auto old = file_->sections().find(array.name);
     if (old == file_->sections().end()) {
-      changed.push_back({array, {}, 0, 0});
+      changed.push_back({.array = array, .runs = {}, .literal_rows = 0, .hash = 0});
       continue;
     }
     auto bytes = all_of(array);
@@ -155,7 +155,7 @@ void UpdatedFile::append(const std::vector<kerf::Stored>& changed) {
 
 std::uint64_t UpdatedFile::commit(const std::vector<KerfArray>& arrays) {
   std::vector<kerf::Stored> whole;
-  for (const auto& array : arrays) whole.push_back({array, {}, 0, 0});
+  for (const auto& array : arrays) whole.push_back({.array = array, .runs = {}, .literal_rows = 0, .hash = 0});
   const std::uint64_t size = kerf::segment_size(0, whole);
   const bool kept = std::all_of(file_->sections().begin(), file_->sections().end(), [&](const auto& s) {
     return std::any_of(arrays.begin(), arrays.end(), [&](const KerfArray& a) { return a.name == s.first; });

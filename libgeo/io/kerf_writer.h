@@ -75,7 +75,7 @@ constexpr const char* kerf_dtype() {
 /// An array of `rows` × `columns` numbers of type T, which `fill` puts.
 template <class T>
 KerfArray kerf_array(std::string name, std::uint64_t rows, std::uint64_t columns, std::function<void(KerfSink&)> fill) {
-  KerfArray a{std::move(name), kerf_dtype<T>(), {rows}, std::move(fill)};
+  KerfArray a{.name = std::move(name), .dtype = kerf_dtype<T>(), .shape = {rows}, .fill = std::move(fill)};
   if (columns > 1) a.shape.push_back(columns);
   return a;
 }

@@ -192,7 +192,7 @@ std::optional<TriangleMesh> coarse_plate(const TriangleMesh& sheets, double voxe
   TriangleMesh mesh = surface_of(*plate_of(scaled, 1, progress), {}, "the level set");
   halve_plate(mesh, scaled);
   for (Vec3& p : mesh.vertices) p = middle + voxel * p;
-  return check_surface(mesh, true).good() ? std::optional(std::move(mesh)) : std::nullopt;
+  return check_surface(mesh, SelfIntersections::find).good() ? std::optional(std::move(mesh)) : std::nullopt;
 }
 
 // The surface around closed parts and open sheets, without attributes. Where there are sheets,
@@ -269,7 +269,7 @@ TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions&
   take_attributes(joined(std::move(mesh), sheets), solid, progress);
   // In ambiguous cells OpenVDB's surface may touch itself.
   report(progress, "check", 0, 1);
-  if (!check_surface(solid, true).good()) solid = repaired_solid(std::move(solid));
+  if (!check_surface(solid, SelfIntersections::find).good()) solid = repaired_solid(std::move(solid));
   if (stats) *stats = done;
   return solid;
 }

@@ -114,7 +114,7 @@ inline std::string fault_of(const Body& body, double volume) {
         return "an edge of guide " + name(g) + " crosses a face";
   }
 
-  if (const auto report = check_complex(k, false); !report.good()) return report.first_problem;
+  if (const auto report = check_complex(k, SelfIntersections::ignore); !report.good()) return report.first_problem;
   const Pieces pieces = find_pieces(k);
   std::vector<std::uint32_t> component;
   const auto components = body.graph.components(component);

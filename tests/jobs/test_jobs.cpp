@@ -53,7 +53,7 @@ TEST_CASE("fracture() gives the pieces and bonds of a score") {
   CHECK(pieces.labels.names == piece_names(7));
   CHECK_FALSE(pieces.bonds.empty());
   CHECK(volume_of(pieces) == Approx(signed_volume(model)));
-  for (const Chunk& c : pieces.chunks) CHECK(check_surface(c.mesh, true).good());
+  for (const Chunk& c : pieces.chunks) CHECK(check_surface(c.mesh, SelfIntersections::find).good());
 
   Complex complex = Complex::from_skin(model);
   insert_sheet(complex, make_score(complex, options).sheet, 1);

@@ -173,7 +173,7 @@ TEST_CASE("a blade that meets two bodies cuts both, wherever they have moved") {
   CHECK(work.refused == 0);
   CHECK(find_pieces(sim.body().surface).count == 4);
   for (const double v : find_pieces(sim.body().surface).volume) CHECK(v == Approx(0.5).epsilon(0.1));
-  CHECK(check_complex(sim.body().surface, true).good());
+  CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
   CHECK(check_body(sim.body()).first_problem == "");
   CHECK(work.fronts > 2 * 6);  // two fronts in each part of a step
 }
@@ -190,7 +190,7 @@ TEST_CASE("a step is cut in as many parts as its blade's limit asks for") {
     const FrameStats work = sim.advance_frame();
     CHECK(work.refused == 0);
     CHECK(find_pieces(sim.body().surface).count == 2);
-    CHECK(check_complex(sim.body().surface, true).good());
+    CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
     return work.fronts;
   };
   const auto few = run("1.0"), many = run("0.25");

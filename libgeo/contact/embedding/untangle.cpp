@@ -61,7 +61,8 @@ void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle&
     }
     if (normal.norm() > 0 && normal.allFinite())
       // A quarter of the distance at the reference, at most the gap: less than the material allows.
-      out.push_back({a, b, normal.normalized(), std::min(in.gap, 0.25 * difference.norm())});
+      out.push_back(
+          {.a = a, .b = b, .normal = normal.normalized(), .separation = std::min(in.gap, 0.25 * difference.norm())});
   }
 }
 
@@ -71,7 +72,7 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
                                    std::vector<std::uint8_t>& marked) {
   // Limits of effort: searches for crossings, and sweeps over the constraints after each search.
   // Larger: more attempts before the crack step is refused.
-  constexpr int most_rounds = 16, most_sweeps = 4;
+  constexpr int max_rounds = 16, max_sweeps = 4;
   const ContactSurface& surface = in.surface;
   const auto representative = coincident_representatives(surface.site, positions);
   const auto represented = [&](std::size_t t) {
@@ -87,7 +88,7 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
     const auto crossings = find_crossings(surface.triangles, positions, representative, true, &marked);
     // In the second half of the rounds, gives up when crossings become more.
     fewest = std::min(fewest, crossings.size());
-    if (crossings.empty() || round == most_rounds || (round >= most_rounds / 2 && crossings.size() > fewest))
+    if (crossings.empty() || round == max_rounds || (round >= max_rounds / 2 && crossings.size() > fewest))
       return crossings;
     if (start.empty()) {
       start = positions;
@@ -97,7 +98,7 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
       if (known.insert(pair).second)
         add_constraints(in, represented(pair.first), represented(pair.second),
                         !in.fresh[pair.first] && !in.fresh[pair.second], start, constraints);
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    for (int sweep = 0; sweep < max_sweeps; ++sweep) {
       bool any = false;
       for (const SeparationConstraint& c : constraints) any |= project(c, positions, moved);
       if (!any) break;

@@ -44,6 +44,10 @@ struct Shell {
 /// beside each other.
 std::vector<Shell> find_shells(const TriangleMesh& mesh);
 
+/// Whether a check looks for faces that cross or overlap, which costs more than all else.
+enum class SelfIntersections : std::uint8_t { ignore, find };
+
+/// The result of check_surface() and check_complex().
 struct SurfaceReport {
   /// closed: no edge with one triangle; manifold: none with more than two, and all triangles at a
   /// vertex are joined across edges there; oriented: the two triangles of each edge run along it in
@@ -58,15 +62,19 @@ struct SurfaceReport {
 };
 
 /// Checks a mesh. A two-sided surface is checked as a crack complex, each crack face once, so that
-/// coincident sheets are no intersection. With `self_intersections`, and where there are none, also
-/// the orientation of each shell: outwards, or inwards in the material of another one.
-SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
+/// coincident sheets are no intersection.
+/// \param crossings  find: also self-intersections and, where there are none, the orientation of
+///   each shell: outwards, or inwards in the material of another one
+/// \return a report that names the first problem; nothing is thrown
+SurfaceReport check_surface(const TriangleMesh& mesh, SelfIntersections crossings);
 
 /// Checks K: radial cycles list their edges' faces in geometric order; both sides of each wedge are
 /// material, or both air; the derived surface is closed, oriented and manifold; no face is
-/// degenerate. With `self_intersections`, also that no two faces cross or overlap, and that the
-/// shells of the skin are oriented as check_surface() says. Exact.
-SurfaceReport check_complex(const Complex& complex, bool self_intersections);
+/// degenerate. Exact.
+/// \param crossings  find: also that no two faces cross or overlap, and that the shells of the skin
+///   are oriented as check_surface() says
+/// \return a report that names the first problem; nothing is thrown
+SurfaceReport check_complex(const Complex& complex, SelfIntersections crossings);
 
 /// The structural part of check_complex() for some faces (dead ones are skipped) and the faces that
 /// share a corner with them. A step with these new faces can break nothing else. Cost follows the
@@ -78,9 +86,9 @@ SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex,
                                                           const std::vector<FaceId>* only = nullptr);
 
-/// Throws InputError unless `mesh` is a valid model: closed, manifold, each shell oriented outwards
-/// or, as a cavity, inwards, no degenerate or self-intersecting triangles, finite coordinates. The
-/// message names the first offending indices and the remedy.
+/// Checks that `mesh` is a valid model: closed, manifold, each shell oriented outwards or, as a
+/// cavity, inwards, no degenerate or self-intersecting triangles, finite coordinates.
+/// \throws InputError where it is not; the message names the first offending indices and the remedy
 void require_solid(const TriangleMesh& mesh);
 
 // ---- Predicates

@@ -38,10 +38,13 @@ struct Front {
 
 /// Resamples `next` to as many points as `previous`: unchanged where the counts agree, else at the
 /// fractions of arc length of the points of `previous`.
+/// \param closed  whether the last point is joined to the first
 std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed);
 
 /// The number of substeps, at least 1, that keeps each front point's motion per substep at or below
-/// `limit` (§ 5.1; model units). Throws InputError unless `limit` is positive.
+/// a limit (§ 5.1).
+/// \param limit  model units
+/// \throws InputError unless `limit` is positive
 int substep_count(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit);
 
 // ---- Fronts in a crack complex
@@ -100,22 +103,34 @@ struct CrackStats {
   double seconds() const;
 };
 
-/// The front before its first step: F_0, without contacts. Throws InputError for fewer than two
-/// points or coordinates that are not finite.
+/// The front before its first step: F_0, without contacts.
+/// \param points  material coordinates, two at least
+/// \param closed  whether the last point is joined to the first
+/// \param crack  number of the crack that the front will leave, at least 1; a number in use
+///   continues that crack
+/// \throws InputError for fewer than two points or coordinates that are not finite
 FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t crack);
 
-/// One step of § 5.2: sweeps the front to `next` (as many points as the front has), inserts the
-/// strip into K and returns the changes. Initiation, branching, merging and termination of cracks
-/// need no flags: they follow from the intersection. Throws InputError for points that do not fit
-/// the front, GeometryError when no attempt passes the guard; `complex` and `front` are then
-/// unchanged. `stats`, where given, is added to.
+/// One step of § 5.2: sweeps the front to `next` and inserts the strip into K. Initiation,
+/// branching, merging and termination of cracks need no flags: they follow from the intersection.
+/// \param next  material coordinates; as many points as the front has
+/// \param options  tolerances, relative to the diagonal of Complex::extent()
+/// \param stats  where given, is added to
+/// \return the changes of K; cost follows the faces that the strip meets
+/// \throws InputError for points that do not fit the front
+/// \throws GeometryError when no attempt passes the guard; `complex` and `front` are then unchanged
 CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options = {},
                    CrackStats* stats = nullptr);
 
-/// Inserts the parts of `sheet` in the material as one crack, in one step. Any triangles will do,
-/// connected or not, crossing each other or not; patch and site are ignored. Throws InputError for
-/// a sheet with indices out of range or coordinates that are not finite, GeometryError when no
-/// attempt passes the guard; `complex` is then unchanged.
+/// Inserts the parts of a sheet in the material as one crack, in one step.
+/// \param sheet  any triangles, connected or not, crossing each other or not; patch and site are
+///   ignored; material coordinates
+/// \param crack  number of the crack, at least 1
+/// \param options  tolerances, relative to the diagonal of Complex::extent()
+/// \param stats  where given, is added to
+/// \return the changes of K
+/// \throws InputError for a sheet with indices out of range or coordinates that are not finite
+/// \throws GeometryError when no attempt passes the guard; `complex` is then unchanged
 CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack,
                         const CrackOptions& options = {}, CrackStats* stats = nullptr);
 

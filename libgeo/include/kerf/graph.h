@@ -219,7 +219,7 @@ class VisibilityGraph::Neighbors {
       const float distance =
           hidden ? row_.paths[path_]
                  : static_cast<float>(std::sqrt(squared_distance(nodes_->position[i_], nodes_->position[to])));
-      return {NodeId(to), AdjacencyRow::bound(row_.bits[at_]), distance, hidden};
+      return {.to = NodeId(to), .warped = AdjacencyRow::bound(row_.bits[at_]), .distance = distance, .hidden = hidden};
     }
     /// To the next neighbour.
     Iterator& operator++() {

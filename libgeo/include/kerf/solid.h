@@ -121,20 +121,25 @@ class Solid {
   /// ∂²U/∂u² p with the implicit step's stiffness at u: in single precision, negative eigenvalues
   /// left out. N per node.
   std::vector<Vec3> stiffness_product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) const;
-  /// Cauchy stress, Pa, about material position x: the mean over material points within `radius`,
-  /// weighted by volume and the kernel. `sees`, where given, accepts the positions of the points
-  /// that count. Zero where there are none.
+  /// The Cauchy stress about a place: the mean over material points near it, weighted by volume and
+  /// the kernel.
+  /// \param x  material coordinates
+  /// \param radius  of the material points that count, model units
+  /// \param sees  where given, accepts the positions of the points that count
+  /// \return Pa; zero where no point counts
   Mat3 stress_at(const State& state, const Vec3& x, double radius,
                  const std::function<bool(const Vec3&)>& sees = {}) const;
 
-  /// Advances `state` by dt with backward Euler: Newton's method on the incremental potential,
-  /// conjugate gradients with a two-level preconditioner, line search. A step that does not
-  /// converge is halved, recursively. `accuracy`: of displacements, relative to the spacing of
-  /// nodes. Not const: the preconditioner's inverses are kept for the next step, which changes its
-  /// time and not its result.
+  /// Advances a state with backward Euler: Newton's method on the incremental potential, conjugate
+  /// gradients with a two-level preconditioner, line search. A step that does not converge is
+  /// halved, recursively. Not const: the preconditioner's inverses are kept for the next step,
+  /// which changes its time and not its result.
+  /// \param dt  s
+  /// \param accuracy  of displacements, relative to the spacing of nodes
   StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3);
-  /// Advances `state` by dt with symplectic Euler, in as many substeps as the fastest wave
-  /// requires; twice as many where energy would rise.
+  /// Advances a state with symplectic Euler, in as many substeps as the fastest wave requires;
+  /// twice as many where energy would rise.
+  /// \param dt  s
   StepReport step_explicit(State& state, double dt, const Environment& environment);
   /// Takes over State::rotation of a state that this solid has not computed, as one read from a
   /// file. Steps and updates do it themselves.

@@ -23,7 +23,7 @@ SurfaceEdge edge_of(const Complex& complex, Side side, int k, Side across) {
   for (const VertexId w : complex.face(across.face).v)
     if (w != a && w != b) d = w;
   if (side.which == 1) std::swap(a, b);
-  return {complex.point(a), complex.point(b), complex.point(c), complex.point(d)};
+  return {.a = complex.point(a), .b = complex.point(b), .c = complex.point(c), .d = complex.point(d)};
 }
 
 // Edges of the derived surface at some faces (ascending), each once.

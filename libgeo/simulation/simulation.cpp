@@ -53,8 +53,10 @@ RunState checked(const Scene& scene, const Body& body, RunState state) {
 // A key with this rotation, whose axis is arbitrary where there is none.
 Motion::Key key_at(double time, const Pose& pose) {
   const Eigen::AngleAxisd turn(pose.rotation);
-  return {time, pose.position, turn.angle() == 0 ? Vec3(Vec3::UnitZ()) : turn.axis(),
-          turn.angle() * 180 / std::numbers::pi};
+  return {.time = time,
+          .position = pose.position,
+          .axis = turn.angle() == 0 ? Vec3(Vec3::UnitZ()) : turn.axis(),
+          .angle = turn.angle() * 180 / std::numbers::pi};
 }
 
 // From the present pose at time `from` to `pose` at time `to`.
@@ -116,7 +118,9 @@ struct Simulation::Impl {
 
   void apply_changes(double time);
   void step(const TimeStep& step, FrameStats& stats);
-  MovedBody moved_body(const TimeStep& step) const { return {body, solid, state.motion, way, step.begin, step.end}; }
+  MovedBody moved_body(const TimeStep& step) const {
+    return {.body = body, .solid = solid, .motion = state.motion, .way = way, .begin = step.begin, .end = step.end};
+  }
   void begin_first_cut(const TimeStep& step, std::optional<FirstCut>& first, FrameStats& stats);
   void cut(const TimeStep& step, std::optional<FirstCut> first, FrameStats& stats);
   std::vector<std::vector<EdgePoint>> map_edge(const MovedBody& moved, std::size_t blade, double fraction,
@@ -432,14 +436,21 @@ std::int32_t Simulation::Impl::unused_crack() const {
 // step.
 void Simulation::Impl::add_wedges() {
   wedge = {};
-  const BladeNodes nodes{body.nodes.position, state.motion.displacement, body.nodes.radius,
-                         [&](std::size_t i) { return surface_distance(body, NodeId(i)); },
-                         [&](std::size_t i) { return solid.mass(NodeId(i)); }};
+  const BladeNodes nodes{.position = body.nodes.position,
+                         .displacement = state.motion.displacement,
+                         .radius = body.nodes.radius,
+                         .surface = [&](std::size_t i) { return surface_distance(body, NodeId(i)); },
+                         .mass = [&](std::size_t i) { return solid.mass(NodeId(i)); }};
   for (std::size_t b = 0; b < scene.blades.size(); ++b) {
     const Blade& blade = scene.blades[b];
     if (!(blade.thickness > 0) || !blade.active(state.time)) continue;
     const Pose pose = blade.motion.at(state.time);
-    wedge.add(b, {blade.at(state.time), blade.closed, pose.rotation * blade.back, blade.thickness, blade.stiffness},
+    wedge.add(b,
+              {.edge = blade.at(state.time),
+               .closed = blade.closed,
+               .back = pose.rotation * blade.back,
+               .thickness = blade.thickness,
+               .stiffness = blade.stiffness},
               nodes);
   }
   if (!wedge.empty()) environment.contact.push_back(&wedge);
@@ -450,9 +461,15 @@ std::optional<ContactStep> Simulation::Impl::begin_contact(double dt, FrameStats
   Stopwatch watch;
   if (obstacles.any()) {
     collisions->update_weights(body, solid);
-    obstacles.add_potentials(
-        {scene, body, solid, collisions->weights(), collisions->targets(state.motion), state.motion, state.time, dt},
-        environment);
+    obstacles.add_potentials({.scene = scene,
+                              .body = body,
+                              .solid = solid,
+                              .weights = collisions->weights(),
+                              .surface = collisions->targets(state.motion),
+                              .motion = state.motion,
+                              .time = state.time,
+                              .dt = dt},
+                             environment);
   }
   std::optional<ContactStep> contact = collisions->begin_step(body, solid, state.motion, dt, environment);
   stats.contact_seconds += watch.lap();
@@ -496,7 +513,13 @@ void Simulation::Impl::fracture(double dt, FrameStats& stats) {
   const auto others = [&] { return stats.split_seconds() + stats.mechanics_seconds + stats.contact_seconds; };
   const double splitting = others();
   step_fracture(
-      {scene.fracture, state.body_index, body, solid, state.motion, dt}, state.fracture,
+      {.options = scene.fracture,
+       .body_index = state.body_index,
+       .body = body,
+       .solid = solid,
+       .motion = state.motion,
+       .dt = dt},
+      state.fracture,
       [&](FrontState& front, const std::vector<Vec3>& next) { return split_step(front, next, stats).has_value(); },
       &stats.fracture);
   stats.fracture_seconds += watch.lap() - (others() - splitting);
@@ -556,7 +579,7 @@ void Simulation::Impl::require_finite() const {
 }
 
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
-    : Simulation(scene, PlacedModels{solid, {solid}}, progress) {}
+    : Simulation(scene, PlacedModels{.all = solid, .bodies = {solid}}, progress) {}
 
 Simulation::Simulation(const Scene& scene, const PlacedModels& models, const Progress& progress) {
   RunStart run = begin_run(scene, models, progress);
@@ -624,7 +647,8 @@ void Simulation::extend_blade(std::size_t blade, int frame, const Pose& pose) {
 // exact.
 void Simulation::extend_pull(std::size_t pull, int frame, const Vec3& position) {
   Motion& motion = impl_->scene.pulls.at(pull).motion;
-  append(motion, {impl_->time_of(state().frame + frame), position, Vec3::UnitZ(), 0});
+  append(motion,
+         {.time = impl_->time_of(state().frame + frame), .position = position, .axis = Vec3::UnitZ(), .angle = 0});
   auto& keys = motion.keys;
   const auto n = keys.size();
   if (n < 3 || keys[n - 2].position != position || keys[n - 3].position != position) return;

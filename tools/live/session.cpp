@@ -234,7 +234,7 @@ void Session::begin_grab(const Hand& hand, const Grab& grab) {
   pull.stiffness = pull_stiffness(*pull.node);
   const std::size_t p = run_.add_pull(std::move(pull));
   run_.extend_pull(p, 0, world_point(grab.spot));
-  pulls_[hand] = {p, grab.to, nearest};
+  pulls_[hand] = {.pull = p, .to = grab.to, .nearest = nearest};
 }
 
 void Session::obey(ClientId page, const Grab& grab) {
@@ -275,7 +275,8 @@ void Session::obey(const Pin& pin) {
   const geo::Vec3& node = run_.body().nodes.position[carrier_of(nearest).index()];
   grip.lo = grip.lo.cwiseMin(node);
   grip.hi = grip.hi.cwiseMax(node);
-  pins_.push_back({run_.add_grip(std::move(grip)), x, world_point(pin.spot), radius});
+  pins_.push_back(
+      {.grip = run_.add_grip(std::move(grip)), .material = x, .world = world_point(pin.spot), .radius = radius});
 }
 
 void Session::obey(const Set& set) {
@@ -326,8 +327,13 @@ void Session::leave(ClientId page) {
 void Session::save() {
   const geo::Scene& scene = run_.scene();
   saved_states_.push(sim::checkpoint_bytes(run_.body(), run_.state(), setup_.fingerprint));
-  saved_.push_back({run_.state().time, run_.state().frame, scene.blades.size(), scene.grips.size(), scene.pulls.size(),
-                    changes_.size(), in_hands()});
+  saved_.push_back({.time = run_.state().time,
+                    .frame = run_.state().frame,
+                    .blades = scene.blades.size(),
+                    .grips = scene.grips.size(),
+                    .pulls = scene.pulls.size(),
+                    .changes = changes_.size(),
+                    .hands = in_hands()});
   drop_states();
 }
 
@@ -409,7 +415,10 @@ void Session::restore_last(const std::string& state) {
 void Session::undo() {
   if (saved_.empty())
     throw BadMessage(dropped_ ? "cuts before these are not kept for undo" : "there is no cut to undo");
-  undone_.push_back({saved_.back(), scene_at(saved_.back()).second, in_hands(), run_.state().frame});
+  undone_.push_back({.before = saved_.back(),
+                     .removed = scene_at(saved_.back()).second,
+                     .hands = in_hands(),
+                     .frame = run_.state().frame});
   const std::string before = saved_states_.pop();
   undone_states_.push(before);
   undone_states_.push(sim::checkpoint_bytes(run_.body(), run_.state(), setup_.fingerprint));

@@ -169,7 +169,9 @@ class Session {
 
   void save();
   void drop_states();
-  InHands in_hands() const { return {checkpoints_, pins_, holds_, withheld_}; }
+  InHands in_hands() const {
+    return {.checkpoints = checkpoints_, .pins = pins_, .holds = holds_, .withheld = withheld_};
+  }
   // The scene with what was there at a saved state, and what was removed from it.
   std::pair<geo::Scene, Removed> scene_at(const Saved& saved) const;
   // Continues with a scene from a state.

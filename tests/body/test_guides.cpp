@@ -57,7 +57,7 @@ TEST_CASE("A letter's inner corners get guides, a block none", "[body]") {
     }
   }
   CHECK(nearer > 0);
-  CHECK(make_body(make_block({1, 1, 1}, 0.5), 0.2, 0.5).GraphStorage::of(graph).guides().size() == 0);
+  CHECK(GraphStorage::of(make_body(make_block({1, 1, 1}, 0.5), 0.2, 0.5).graph).guides().size() == 0);
   CHECK_THROWS_AS(make_body(letter, 0.05, 0.01), InputError);
   CHECK_THROWS_AS(make_body(letter, 0.05, 0.0 / 0.0), InputError);
 }

@@ -33,7 +33,7 @@ endif()
 set(KERF_MODULE_ORDER base geometry surface sampling graph crack score body
   mechanics/material mechanics/terms mechanics/discretisation mechanics/solver
   contact/detection contact/surface contact/response contact/motion contact/embedding contact
-  simulation io)
+  simulation io jobs)
 string(REGEX REPLACE "/[^;]*" "" KERF_MODULES "${KERF_MODULE_ORDER}")
 list(REMOVE_DUPLICATES KERF_MODULES)
 

@@ -9,8 +9,9 @@
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-model", "Makes a sample model, or a front that sweeps through the middle of a model.",
-               "  kerf-model pumpkin --frequency 22 -o pumpkin.ply\n  kerf-model letter --text K -o k.ply\n  "
-               "kerf-model front --around bear.off --steps 12 -o halve.front");
+               R"(  kerf-model pumpkin --frequency 22 -o pumpkin.ply
+  kerf-model letter --text K -o k.ply
+  kerf-model front --around bear.off --steps 12 -o halve.front)");
   std::string kind, text = "K", around;
   int frequency = 22, resolution = 24, steps = 12, points = 24;
   double edge = 0.1, depth = 0.25, bend = 0.06, tilt = 7;

@@ -192,7 +192,8 @@ class Cutting {
         if (!w_.repro.empty()) {
           geo::write_all(w_.repro + ".ply", [&](std::ostream& out) { geo::write_ply(out, cut_surface(), states_); });
           geo::write_all(w_.repro + ".front", [&](std::ostream& out) {
-            geo::write_fronts(out, {{front.name, front.closed, {start, next}, {}}});
+            geo::write_fronts(out,
+                              {{.name = front.name, .closed = front.closed, .steps = {start, next}, .triangles = {}}});
           });
         }
         throw geo::GeometryError(w_.model + ": front '" + front.name + "', " + e.what() + "; " +
@@ -240,10 +241,11 @@ class Cutting {
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-crack", "Sweeps fronts through a solid and adds the cracks they leave, both sides of each.",
-               "  kerf-crack bear.off --front halve.front -o cut.ply\n  kerf-crack bear.off --front halve.front "
-               "--steps 0:6 -o half.ply\n  kerf-crack half.ply --front halve.front --steps 6:12 -o cut.ply\n"
-               "  kerf-crack cut.ply --front second.front --remesh 15 -o quarters.ply\n  kerf-crack bear.off --sheet "
-               "plane.obj --jagged 0.01 -o broken.ply");
+               R"(  kerf-crack bear.off --front halve.front -o cut.ply
+  kerf-crack bear.off --front halve.front --steps 0:6 -o half.ply
+  kerf-crack half.ply --front halve.front --steps 6:12 -o cut.ply
+  kerf-crack cut.ply --front second.front --remesh 15 -o quarters.ply
+  kerf-crack bear.off --sheet plane.obj --jagged 0.01 -o broken.ply)");
   Command w;
   t.argument("MESH", w.model, "A closed surface, or the output of an earlier run to go on with");
   t.option("--front", w.fronts, "Front files, each front or sheet a crack of its own");

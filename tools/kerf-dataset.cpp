@@ -109,9 +109,10 @@ void print(const dataset::Totals& t) {
 int main(int argc, char** argv) {
   tool::Tool t("kerf-dataset",
                "Breaks many models many times: pieces with labels of their faces, bonds and volumes, for learning.",
-               "  kerf-dataset models/*.off -o fractures\n  kerf-dataset models.txt --patterns voronoi,planes --pieces "
-               "5:30 --jagged 0:0.02 --seeds 1000 -o fractures\n  kerf-dataset models.txt --shard 3/100 -o fractures\n"
-               "  kerf-dataset models/*.off --seeds 20 --layout folders -o fractures");
+               R"(  kerf-dataset models/*.off -o fractures
+  kerf-dataset models.txt --patterns voronoi,planes --pieces 5:30 --jagged 0:0.02 --seeds 1000 -o fractures
+  kerf-dataset models.txt --shard 3/100 -o fractures
+  kerf-dataset models/*.off --seeds 20 --layout folders -o fractures)");
   Command w;
   t.argument("MODELS", w.models, "Closed surfaces, or lists (.txt) with a path, or name, tab and path, on each line");
   t.option("--patterns", w.patterns, "Patterns of kerf-score, separated by commas");

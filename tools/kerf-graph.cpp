@@ -10,8 +10,8 @@
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-graph", "Builds the visibility graph of nodes inside a surface, and all that hangs on it.",
-               "  kerf-graph nodes.pcd --surface bear.off -o bear.kerf\n  kerf-sample bear.off | kerf-graph --surface "
-               "bear.off -o bear.kerf");
+               R"(  kerf-graph nodes.pcd --surface bear.off -o bear.kerf
+  kerf-sample bear.off | kerf-graph --surface bear.off -o bear.kerf)");
   std::string nodes_path = "-", surface_path, method = "auto";
   int k = 26;
   double guides = 0;
@@ -50,11 +50,11 @@ int main(int argc, char** argv) {
     std::ostringstream arguments;
     arguments << "-k " << k;
     if (guides > 0) arguments << " --guides " << guides;
-    body.history.push_back({"kerf-graph",
-                            KERF_VERSION,
-                            arguments.str(),
-                            {tool::named_hash(nodes_path, geo::fingerprint(nodes_bytes)),
-                             tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
+    body.history.push_back({.tool = "kerf-graph",
+                            .version = KERF_VERSION,
+                            .arguments = arguments.str(),
+                            .inputs = {tool::named_hash(nodes_path, geo::fingerprint(nodes_bytes)),
+                                       tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
     geo::write_all(target, [&](std::ostream& out) { geo::write_body(out, body); });
     if (t.verbose)
       t.say("kerf-graph: " + std::to_string(body.nodes.size()) + " nodes, " + std::to_string(body.graph.edge_count()) +

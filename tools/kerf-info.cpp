@@ -160,11 +160,19 @@ int main(int argc, char** argv) {
   tool::Tool t("kerf-info",
                "Says what a surface, node, body, front or scene file or the folder of a run holds; --check verifies "
                "every invariant.",
-               "  kerf-info cut.kerf\n  kerf-info --check cut.ply\n  kerf-info --json bear.off\n  kerf-info --check "
-               "pieces/*.ply\n  kerf-info cut.kerf --histogram\n  kerf-info cut.kerf --node 12\n  kerf-info cut.kerf "
-               "--edge 12 40\n  kerf-info cut.kerf --vertex 7\n"
-               "  kerf-info --diff bear.kerf cut.kerf\n  kerf-info out/halve\n  kerf-info cut.kerf --export cut.vtu\n  "
-               "kerf-info cut.kerf --export cut.peridigm\n  kerf-info --compact cut.kerf");
+               R"(  kerf-info cut.kerf
+  kerf-info --check cut.ply
+  kerf-info --json bear.off
+  kerf-info --check pieces/*.ply
+  kerf-info cut.kerf --histogram
+  kerf-info cut.kerf --node 12
+  kerf-info cut.kerf --edge 12 40
+  kerf-info cut.kerf --vertex 7
+  kerf-info --diff bear.kerf cut.kerf
+  kerf-info out/halve
+  kerf-info cut.kerf --export cut.vtu
+  kerf-info cut.kerf --export cut.peridigm
+  kerf-info --compact cut.kerf)");
   Command c;
   t.argument("FILE", c.paths,
              "Files of Kerf's, folders of runs; - reads standard input; of several a sentence each; two with --diff");

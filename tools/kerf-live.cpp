@@ -99,7 +99,9 @@ void serve(const Command& command, const tool::Tool& t) {
   live::Inbox inbox;
   live::LoopEnd end;
   {
-    live::Server server({command.address, command.port, live::random_token(), live::page_text()}, inbox);
+    live::Server server(
+        {.address = command.address, .port = command.port, .token = live::random_token(), .page = live::page_text()},
+        inbox);
     std::cout << server.url() << std::endl;
     const bool opened = !command.no_browser && live::open_browser(server.url());
     t.say(opened ? "kerf-live: opened in the browser; Ctrl-C ends it"
@@ -120,8 +122,8 @@ int main(int argc, char** argv) {
   tool::Tool t("kerf-live",
                "Simulates a scene, or a model on the ground, while hands cut, grab and pin it in a browser. Prints the "
                "address of the page.",
-               "  kerf-live samples/scenes/polyp.toml --no-blades\n  kerf-live models/bear.off --up y --record "
-               "bear.toml && kerf-sim bear.toml -o out/bear");
+               R"(  kerf-live samples/scenes/polyp.toml --no-blades
+  kerf-live models/bear.off --up y --record bear.toml && kerf-sim bear.toml -o out/bear)");
   Command command;
   t.patience = 5;  // a frame may take long
   t.argument("SCENE|MODEL", command.scene, "Scene file (TOML), or a model: OBJ, PLY, STL, OFF or GLB");

@@ -176,11 +176,14 @@ int main(int argc, char** argv) {
   tool::Tool t(
       "kerf-pieces",
       "Writes each piece of a cut surface as a closed mesh, with bonds between them: all in one file, or as a folder.",
-      "  kerf-pieces cut.ply -o pieces.glb\n  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o "
-      "pieces.glb\n  kerf-pieces cut.ply --least 0.001 --levels 3 --physics omi --density 2400 --strength 1e5 -o "
-      "pieces.glb\n  kerf-pieces cut.ply --density 2400 --strength 1e5 --up z -o pieces.usda\n  kerf-pieces cut.ply -o "
-      "pieces/\n  kerf-pieces cut.ply --obj --hulls -o objects/\n  kerf-pieces "
-      "out/halve -o halves.glb\n  kerf-pieces out/halve/frames/frame_0020.ply -o frame20.glb");
+      R"(  kerf-pieces cut.ply -o pieces.glb
+  kerf-pieces cut.ply --hulls --hull-parts 4 --bonds bonds.json -o pieces.glb
+  kerf-pieces cut.ply --least 0.001 --levels 3 --physics omi --density 2400 --strength 1e5 -o pieces.glb
+  kerf-pieces cut.ply --density 2400 --strength 1e5 --up z -o pieces.usda
+  kerf-pieces cut.ply -o pieces/
+  kerf-pieces cut.ply --obj --hulls -o objects/
+  kerf-pieces out/halve -o halves.glb
+  kerf-pieces out/halve/frames/frame_0020.ply -o frame20.glb)");
   Command w;
   t.argument("SURFACE", w.model, "A cut surface (kerf-crack), a body (.kerf), a run's folder, or a frame in it");
   t.flag("--repair", w.repair, "Repair a surface without cracks first, as kerf-repair does; its parts are the pieces");

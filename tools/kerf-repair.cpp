@@ -6,6 +6,7 @@
 #include <kerf/crack.h>
 #include <kerf/files.h>
 #include <kerf/mesh.h>
+#include <kerf/repair.h>
 #include "model.h"
 #include "tool.h"
 
@@ -135,9 +136,12 @@ int main(int argc, char** argv) {
       "kerf-repair",
       "Makes a solid of a surface: welds, turns triangles the same way, closes holes, unites parts that overlap; or "
       "wraps it in a new surface.",
-      "  kerf-repair scan.obj -o solid.ply\n  kerf-repair scan.stl --weld 1e-5 -o solid.ply\n  kerf-repair scan.ply "
-      "--smooth -o solid.ply\n  kerf-repair parts.obj --voxel 0.005 -o solid.ply\n  kerf-repair part.stl --edge 0.03 "
-      "-o fine.ply\n  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front");
+      R"(  kerf-repair scan.obj -o solid.ply
+  kerf-repair scan.stl --weld 1e-5 -o solid.ply
+  kerf-repair scan.ply --smooth -o solid.ply
+  kerf-repair parts.obj --voxel 0.005 -o solid.ply
+  kerf-repair part.stl --edge 0.03 -o fine.ply
+  kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front)");
   Command w;
   t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF, glTF, FBX); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");

@@ -51,9 +51,9 @@ std::string figures(const geo::NodeSet& nodes, const geo::SampleReport& report, 
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-sample", "Samples a solid into nodes, finer at the surface than in the depth.",
-               "  kerf-sample bear.off --spacing 3% -o nodes.pcd\n  kerf-sample bear.off -n 2000 | kerf-graph "
-               "--surface bear.off -o bear.kerf\n"
-               "  kerf-sample cloud.vdb --grid density --iso 0.2 --levels 3 --surface cloud.ply -o nodes.pcd");
+               R"(  kerf-sample bear.off --spacing 3% -o nodes.pcd
+  kerf-sample bear.off -n 2000 | kerf-graph --surface bear.off -o bear.kerf
+  kerf-sample cloud.vdb --grid density --iso 0.2 --levels 3 --surface cloud.ply -o nodes.pcd)");
   std::string model, spacing, pattern = "jitter", grid, iso, surface;
   int levels = 2, count = 0, across = 3;
   double jitter = 0.15, support = 1.8, adaptivity = 0;

@@ -80,11 +80,11 @@ geo::ScoreOptions options_of(const Command& w, std::uint64_t seed) {
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-score", "Writes a fracture pattern as a front file, for kerf-crack to part a model along.",
-               "  kerf-score bear.off --pattern voronoi --pieces 30 --jagged 0.02 --seed 7 -o score.front\n  "
-               "kerf-score bear.off --pattern voronoi --impact 0,0.2,0.1 --pieces 50 -o impact.front\n"
-               "  kerf-score pane.ply --pattern glass --impact 0.4,0.5,0 --pieces 60 -o glass.front\n  kerf-score "
-               "bear.off --pattern bricks --axis y --depth 80% -o partial.front\n"
-               "  kerf-score bear.off --pattern curves --curves lines.obj --axis z -o curves.front");
+               R"(  kerf-score bear.off --pattern voronoi --pieces 30 --jagged 0.02 --seed 7 -o score.front
+  kerf-score bear.off --pattern voronoi --impact 0,0.2,0.1 --pieces 50 -o impact.front
+  kerf-score pane.ply --pattern glass --impact 0.4,0.5,0 --pieces 60 -o glass.front
+  kerf-score bear.off --pattern bricks --axis y --depth 80% -o partial.front
+  kerf-score bear.off --pattern curves --curves lines.obj --axis z -o curves.front)");
   Command w;
   t.argument("MODEL", w.model, "A closed surface, or a cut one from kerf-crack");
   t.choice("--pattern", w.pattern, {geo::pattern_names.begin(), geo::pattern_names.end()}, "Where the walls are");
@@ -119,7 +119,10 @@ int main(int argc, char** argv) {
     }
     if (score.sheet.triangles.empty()) throw tool::Failure("the pattern does not meet the model; ask for more pieces");
     const std::size_t triangles = score.sheet.triangles.size();
-    const geo::Front front{w.pattern, false, {std::move(score.sheet.vertices)}, std::move(score.sheet.triangles)};
+    const geo::Front front{.name = w.pattern,
+                           .closed = false,
+                           .steps = {std::move(score.sheet.vertices)},
+                           .triangles = std::move(score.sheet.triangles)};
     geo::write_all(target, [&](std::ostream& out) { geo::write_fronts(out, {front}); });
     const bool as_given =
         options.pattern.pattern == geo::Pattern::curves || options.pattern.pattern == geo::Pattern::sheets;

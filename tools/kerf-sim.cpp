@@ -109,8 +109,11 @@ class RecordedRun {
       geo::Stopwatch writing;
       run_.solid();  // its points follow the last cut here, not while files are written
       stats.mechanics_seconds += writing.lap();
-      sim::Frame done = frame_of({frame, run_.state().time, run_.body().nodes.size(),
-                                  run_.body().surface.live_face_count(), std::move(stats)});
+      sim::Frame done = frame_of({.frame = frame,
+                                  .time = run_.state().time,
+                                  .nodes = run_.body().nodes.size(),
+                                  .faces = run_.body().surface.live_face_count(),
+                                  .stats = std::move(stats)});
       done.outcome.stats.write_seconds = waited + writing.lap();
       total_ += done.outcome.stats;
       writer_.add(std::move(done));
@@ -137,8 +140,10 @@ class RecordedRun {
   sim::Frame frame_of(sim::FrameOutcome outcome) const {
     // Attributes are carried for a single model only; several have no common ones.
     const geo::TriangleMesh* model = setup_.models.bodies.size() == 1 ? &setup_.models.all : nullptr;
-    return {std::move(outcome), run_.surface(model), nodes_of(run_),
-            geo::place_obstacles(setup_.scene, setup_.models, run_.state().time)};
+    return {.outcome = std::move(outcome),
+            .surface = run_.surface(model),
+            .nodes = nodes_of(run_),
+            .obstacles = geo::place_obstacles(setup_.scene, setup_.models, run_.state().time)};
   }
   void write_checkpoint(const std::function<void(std::ostream&)>& write) {
     folder_.write_text(folder_.log(), writer_.log());
@@ -243,8 +248,9 @@ int main(int argc, char** argv) {
   tool::Tool t("kerf-sim",
                "Runs a scene: bodies deform while blades cut them. Writes numbered frames, a ParaView series, a USD "
                "file and checkpoints.",
-               "  kerf-sim samples/scenes/halve.toml -o out/halve\n  kerf-sim halve.toml -o out/soft --set "
-               "material.young=2e4 --set blade.0.divide=9 --frames 48\n  kerf-sim halve.toml -o out/halve --resume");
+               R"(  kerf-sim samples/scenes/halve.toml -o out/halve
+  kerf-sim halve.toml -o out/soft --set material.young=2e4 --set blade.0.divide=9 --frames 48
+  kerf-sim halve.toml -o out/halve --resume)");
   Command command;
   t.patience = 20;  // a time step may take long
   t.argument("SCENE", command.scene, "Scene file (TOML)");

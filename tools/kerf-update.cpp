@@ -11,11 +11,11 @@
 #include "version.h"
 
 int main(int argc, char** argv) {
-  tool::Tool t(
-      "kerf-update",
-      "Cuts a body's visibility graph with the cracks of a surface, samples new nodes near them, and updates "
-      "neighbourhoods and binding.",
-      "  kerf-update bear.kerf --surface cut.ply -o cut.kerf\n  kerf-update bear.kerf --surface cut.ply -o bear.kerf");
+  tool::Tool t("kerf-update",
+               "Cuts a body's visibility graph with the cracks of a surface, samples new nodes near them, and updates "
+               "neighbourhoods and binding.",
+               R"(  kerf-update bear.kerf --surface cut.ply -o cut.kerf
+  kerf-update bear.kerf --surface cut.ply -o bear.kerf)");
   std::string body_path, surface_path;
   bool no_resample = false;
   t.argument("BODY", body_path, "The body before (.kerf)");
@@ -49,11 +49,11 @@ int main(int argc, char** argv) {
       throw geo::InputError(surface_path + ": " + e.what());
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    body.history.push_back(
-        {"kerf-update",
-         KERF_VERSION,
-         no_resample ? "--no-resample" : "",
-         {tool::named_hash(body_path, state), tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
+    body.history.push_back({.tool = "kerf-update",
+                            .version = KERF_VERSION,
+                            .arguments = no_resample ? "--no-resample" : "",
+                            .inputs = {tool::named_hash(body_path, state),
+                                       tool::named_hash(surface_path, geo::fingerprint(surface_bytes))}});
     if (in_place)
       geo::write_body(*in_place, body);
     else

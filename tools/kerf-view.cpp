@@ -179,12 +179,15 @@ int main(int argc, char** argv) {
   tool::Tool t(
       "kerf-view",
       "Draws files, or a run's frames: a picture (.png), an animation (.webp, .mp4) or a page for the browser (.html).",
-      "  kerf-view cut.kerf -o cut.html\n  kerf-view out/halve -o halve.html\n  kerf-view cut.ply --explode 0.4 -o "
-      "cut.png\n  kerf-view cut.kerf --nodes --opacity 0.25 -o nodes.png\n"
-      "  kerf-view bear.kerf --nodes --edges --cut-away 0,-1,0 -o inside.png\n  kerf-view cut.kerf --node 100 --before "
-      "bear.kerf --cut-edges --opacity 0.2 -o near.png\n"
-      "  kerf-view cut.ply halve.front -o both.png\n  kerf-view out/halve -o sheet.png\n  kerf-view out/halve -o "
-      "halve.webp");
+      R"(  kerf-view cut.kerf -o cut.html
+  kerf-view out/halve -o halve.html
+  kerf-view cut.ply --explode 0.4 -o cut.png
+  kerf-view cut.kerf --nodes --opacity 0.25 -o nodes.png
+  kerf-view bear.kerf --nodes --edges --cut-away 0,-1,0 -o inside.png
+  kerf-view cut.kerf --node 100 --before bear.kerf --cut-edges --opacity 0.2 -o near.png
+  kerf-view cut.ply halve.front -o both.png
+  kerf-view out/halve -o sheet.png
+  kerf-view out/halve -o halve.webp)");
   Command w;
   view::Look look;
   t.argument("FILE", w.paths,
@@ -253,7 +256,8 @@ int main(int argc, char** argv) {
     }
 
     if (kind == Kind::html) {
-      const view::PageOptions page_options{w.megabytes, look.before, w.rate, eye.y_up};
+      const view::PageOptions page_options{
+          .megabytes = w.megabytes, .before = look.before, .frame_rate = w.rate, .y_up = eye.y_up};
       const view::Page page = folder ? view::page_of(view::find_run(w.paths[0]), page_options, progress)
                                      : view::page_of(view::read_subject(w.paths), page_options, progress);
       geo::report(progress, "done", 1, 1);

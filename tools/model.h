@@ -10,6 +10,7 @@
 #include <kerf/crack.h>
 #include <kerf/error.h>
 #include <kerf/files.h>
+#include <kerf/repair.h>
 #include "tool.h"
 
 namespace tool {

@@ -97,7 +97,7 @@ SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
   return {};
 }
 
-double longest_reach(const Body& body) { return body.graph.storage().plain_unit() * 0x1p26; }
+double longest_reach(const Body& body) { return GraphStorage::of(body.graph).plain_unit() * 0x1p26; }
 
 NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v) {
   const Vec3& q = body.surface.point(body.surface.site(v));

@@ -20,7 +20,7 @@ BodyReport check_body(const Body& body) {
   const Complex& k = body.surface;
   const std::size_t n = body.nodes.size();
   std::vector<std::uint32_t> component;
-  const GraphStorage& graph = body.graph.storage();
+  const GraphStorage& graph = GraphStorage::of(body.graph);
   report.graph_components = body.graph.components(component);
   const Pieces pieces = find_pieces(k);
   report.pieces = pieces.count;

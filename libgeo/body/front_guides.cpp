@@ -23,7 +23,7 @@ SurfaceEdge edge_of(const Complex& complex, Side side, int k, Side across) {
   for (const VertexId w : complex.face(across.face).v)
     if (w != a && w != b) d = w;
   if (side.which == 1) std::swap(a, b);
-  return {complex.point(a), complex.point(b), complex.point(c), complex.point(d)};
+  return {.a = complex.point(a), .b = complex.point(b), .c = complex.point(c), .d = complex.point(d)};
 }
 
 // Edges of the derived surface at some faces (ascending), each once.
@@ -61,7 +61,7 @@ std::vector<Guide> all_guides(const Body& body) {
 GuideChange guides_after(const Body& body, const CrackDelta& crack) {
   GuideChange change;
   if (body.guide_spacing == 0) return change;
-  const GuideSet& guides = body.graph.storage().guides();
+  const GuideSet& guides = GraphStorage::of(body.graph).guides();
   // A guide stands at spacing / 64 < radius / 64 from its edge (guide_placement.cpp). A crack face
   // that near has cut the edge.
   std::vector<std::uint32_t> near, others;

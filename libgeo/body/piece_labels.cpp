@@ -143,7 +143,7 @@ std::vector<DetachedPiece> detach(Body& body, std::vector<TwoSides> crack_faces)
         rest = v;
     for (const auto v : known) {
       if (v == rest) continue;
-      detached.push_back({body.cache->piece_count++, from, v, rest});
+      detached.push_back({.piece = body.cache->piece_count++, .from = from, .at = v, .rest = rest});
       for (const auto w : shells.inside(v.value)) labels[w] = detached.back().piece;
     }
   }

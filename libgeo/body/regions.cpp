@@ -34,7 +34,7 @@ void Regions::seed(std::uint32_t at) {
   Slot& s = slot(at);
   if (s.region != none) return;
   s.region = static_cast<std::uint32_t>(regions_.size());
-  regions_.push_back({s.region, at, {}, {at}});
+  regions_.push_back({.parent = s.region, .lowest = at, .inside = {}, .edge = {at}});
   seeds_.push_back(at);
 }
 
@@ -44,7 +44,7 @@ std::uint32_t Regions::unite(std::uint32_t a, std::uint32_t b) {
   large.inside.insert(large.inside.end(), small.inside.begin(), small.inside.end());
   large.edge.insert(large.edge.end(), small.edge.begin() + static_cast<std::ptrdiff_t>(small.begin), small.edge.end());
   large.lowest = std::min(large.lowest, small.lowest);
-  small = {a, small.lowest, {}, {}};
+  small = {.parent = a, .lowest = small.lowest, .inside = {}, .edge = {}};
   return a;
 }
 

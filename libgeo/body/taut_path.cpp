@@ -173,7 +173,8 @@ class SupportedPath {
       : from_(from), to_(to), lowest_(1e-16 * k.extent().diagonal()), random_(path.size() - 1) {
     const auto support_end = [&](const PathEnd& end, std::size_t step) {
       const Vec3 off = end.point - end.foot;
-      supports_.push_back({end.foot, {off.normalized()}, std::min(0.25 * reach, off.norm()), step});
+      supports_.push_back(
+          {.at = end.foot, .off = {off.normalized()}, .height = std::min(0.25 * reach, off.norm()), .step = step});
     };
     support_end(from, 0);
     const auto at = crossings(k, path, from.foot, to.foot, clear);
@@ -184,10 +185,11 @@ class SupportedPath {
       while (last + 1 < at.size() && (at[last + 1] - at[s]).norm() < 1e-9 * reach) ++last;
       const auto t = k.corners(path[s].first.face);
       supports_.push_back(
-          {at[s],
-           around_edge(k, path[s].first, path[last + 1].first, t[static_cast<std::size_t>(path[s].second)],
-                       t[static_cast<std::size_t>((path[s].second + 1) % 3)]),
-           0.25 * reach, last});
+          {.at = at[s],
+           .off = around_edge(k, path[s].first, path[last + 1].first, t[static_cast<std::size_t>(path[s].second)],
+                              t[static_cast<std::size_t>((path[s].second + 1) % 3)]),
+           .height = 0.25 * reach,
+           .step = last});
       s = last + 1;
     }
     support_end(to, at.size());

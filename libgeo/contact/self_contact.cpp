@@ -88,7 +88,16 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
   step.penalty = spare_penalty_ ? std::move(spare_penalty_) : std::make_unique<SelfContactPenalty>(penalty_options);
   step.penalty->restart(penalty_options);
   near_.invalidate();
-  assemble_penalty({body, solid, weights_, state.displacement, free, targets, mean_targets, free_targets, dt, gap()},
+  assemble_penalty({.body = body,
+                    .solid = solid,
+                    .weights = weights_,
+                    .displacement = state.displacement,
+                    .free = free,
+                    .targets = targets,
+                    .mean_targets = mean_targets,
+                    .free_targets = free_targets,
+                    .dt = dt,
+                    .gap = gap()},
                    surface_, near_, *step.penalty);
   return step;
 }
@@ -112,9 +121,10 @@ ContactStats SelfContact::finish_step_with_impulses(const Body& body, const Soli
   Stopwatch clock;
   update_weights(body, solid);
   take_rotations(solid);
-  const std::size_t touching =
-      resolve_with_impulses({solid, weights_, before, dt, fixed},
-                            {gap(), options_.friction, options_.recovery, options_.rounds}, surface_, near_, state);
+  const std::size_t touching = resolve_with_impulses(
+      {.solid = solid, .weights = weights_, .before = before, .dt = dt, .fixed = fixed},
+      {.gap = gap(), .friction = options_.friction, .recovery = options_.recovery, .rounds = options_.rounds}, surface_,
+      near_, state);
   ContactStats stats = move_surface(state.displacement, nullptr);
   stats.touching = touching;
   stats.seconds = clock.lap();
@@ -139,8 +149,13 @@ ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const std::ve
   std::vector<Vec3> guess;
   if (tracking_error) guess = likely_positions(goal, *tracking_error, coincidence.representative, surface().edge);
   BoundedMotionStats bounded;
-  surface_.move_to(move_without_crossing({surface().triangles, coincidence.representative, positions(), goal, gap(),
-                                          2 * gap(), tracking_error ? &guess : nullptr},
+  surface_.move_to(move_without_crossing({.triangles = surface().triangles,
+                                          .representative = coincidence.representative,
+                                          .from = positions(),
+                                          .to = goal,
+                                          .gap = gap(),
+                                          .reach = 2 * gap(),
+                                          .guess = tracking_error ? &guess : nullptr},
                                          true, &bounded, &near_, &surface_.fans()));
   ++revision_;
   near_.invalidate();
@@ -154,7 +169,15 @@ ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const std::ve
 
 EmbeddingPlan SelfContact::plan_embedding(const Body& body, const Solid& solid, const State& state,
                                           const Complex& grown, const CrackDelta& crack) const {
-  return {embed_new_surface({body, solid, state, surface(), positions(), grown, crack, gap()}), revision_};
+  return {embed_new_surface({.body = body,
+                             .solid = solid,
+                             .state = state,
+                             .before = surface(),
+                             .positions = positions(),
+                             .after = grown,
+                             .crack = crack,
+                             .gap = gap()}),
+          revision_};
 }
 
 void SelfContact::commit(EmbeddingPlan plan, const Body& body, const BodyDelta& delta) {

@@ -172,8 +172,8 @@ std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, std::
   std::size_t count = snap_to_vertices(strip, complex, snapping.reach);
   if (snapping.to == Snapping::To::vertices) return count;
   // A round divides edges near those that the last one has made: these are few, and shorter.
-  constexpr int most_rounds = 3;
-  for (int round = 0; round < most_rounds; ++round) {
+  constexpr int max_rounds = 3;
+  for (int round = 0; round < max_rounds; ++round) {
     const ComplexEdit edit = crack::divide_near_edges(complex, strip, snapping.reach);
     if (edit.empty()) break;
     deltas.push_back(complex.apply(edit));
@@ -189,8 +189,8 @@ void join_specks(Complex& complex, const Snapping& snapping, std::vector<CrackDe
   if (!(snapping.thickness > 0)) return;
   const std::size_t insertion = deltas.size() - 1;
   // Two specks that lie on each other are one after the first round.
-  constexpr int most_rounds = 4;
-  for (int round = 0; round < most_rounds; ++round) {
+  constexpr int max_rounds = 4;
+  for (int round = 0; round < max_rounds; ++round) {
     ComplexEdit edit;
     edit.removed_faces = crack::find_specks(complex, deltas[insertion], snapping.thickness);
     if (edit.empty()) return;

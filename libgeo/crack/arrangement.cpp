@@ -200,7 +200,7 @@ void Arrangement::divide(std::uint32_t e, int which) {
   const auto& c = elements[e].corner;
   for (const SharedPoint& s : shared_)
     if (s.point != c[0] && s.point != c[1] && s.point != c[2])
-      divisions_.push_back({e, s.point, no_point, s.on[which]});
+      divisions_.push_back({.element = e, .a = s.point, .b = no_point, .edges = s.on[which]});
 }
 
 // The sides of the corners of s against the plane of t, and vice versa; false when one is clear of
@@ -226,7 +226,7 @@ void Arrangement::meet_pair(std::uint32_t a, std::uint32_t b, const Signs& sign)
   for (int i = 0; i < 2; ++i) {
     divide(element[i], i);
     if (shared_.size() == 2 && !(shared_[0].on[i] & shared_[1].on[i]))
-      divisions_.push_back({element[i], shared_[0].point, shared_[1].point, 0});
+      divisions_.push_back({.element = element[i], .a = shared_[0].point, .b = shared_[1].point, .edges = 0});
   }
 }
 
@@ -287,7 +287,8 @@ void Arrangement::meet_coplanar(std::uint32_t a, std::uint32_t b) {
       const SharedPoint *from = nullptr, *to = nullptr;
       for (const SharedPoint& s : shared_)
         if (s.on[1 - i] & 1 << k) (from ? to : from) = &s;
-      if (from && to && !(from->on[i] & to->on[i])) divisions_.push_back({element[i], from->point, to->point, 0});
+      if (from && to && !(from->on[i] & to->on[i]))
+        divisions_.push_back({.element = element[i], .a = from->point, .b = to->point, .edges = 0});
     }
   }
   if (shared_.size() >= 3) coplanar_pairs_.push_back(a < strip_size ? std::pair{a, b} : std::pair{b, a});

@@ -76,8 +76,14 @@ class Inspection {
       const Box3 box = box_of(corners[0], corners[1], corners[2]);
       const double apart = f.crack > 0 ? clearance_ : 0;
       // An exact face of a crack may still be too near to a face that an earlier step has rounded.
-      faces_.push_back({corners, ids, box.grown(apart), Plane(corners, box, apart), ~0u, rounded, rounded || apart > 0,
-                        f.crack > 0});
+      faces_.push_back({.corners = corners,
+                        .ids = ids,
+                        .box = box.grown(apart),
+                        .plane = Plane(corners, box, apart),
+                        .family = ~0u,
+                        .rounded = rounded,
+                        .tested = rounded || apart > 0,
+                        .cracked = f.crack > 0});
     }
     for (const Family& family : families_)
       for (auto i = family.first; i < family.end; ++i)
@@ -168,8 +174,14 @@ class Inspection {
           const std::array<std::uint32_t, 3> ids{v[0].value, v[1].value, v[2].value};
           if (face.plane.clears(face.ids, ids, corners, size)) continue;
           const bool cracked = complex_.face(f).crack > 0;
-          const TestedFace kept{corners, ids,   kept_box, Plane(corners, kept_box, cracked ? clearance_ : 0),
-                                ~0u,     false, false,    cracked};
+          const TestedFace kept{.corners = corners,
+                                .ids = ids,
+                                .box = kept_box,
+                                .plane = Plane(corners, kept_box, cracked ? clearance_ : 0),
+                                .family = ~0u,
+                                .rounded = false,
+                                .tested = false,
+                                .cracked = cracked};
           if (const char* what = fault_between(face, kept))
             return {std::string(what) + " face " + std::to_string(f.value), {i}};
         }

@@ -23,7 +23,12 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
   std::uint32_t count = 0, last = ~0u;
   for (std::uint32_t e = arrangement.strip_size; e < arrangement.elements.size(); ++e)
     if (const auto& element = arrangement.elements[e]; element.cut) {
-      families.push_back({complex.corners(element.face), count, count + element.end - element.first, {}, false, true});
+      families.push_back({.plane = complex.corners(element.face),
+                          .first = count,
+                          .end = count + element.end - element.first,
+                          .near = {},
+                          .near_known = false,
+                          .whole = true});
       count = families.back().end;
     }
   const auto& points = arrangement.points();
@@ -31,8 +36,12 @@ std::vector<Family> families_of(const Complex& complex, const Arrangement& arran
     const auto& element = arrangement.elements[ref.element];
     const auto& c = element.corner;
     if (last != ref.element) {
-      families.push_back(
-          {{points[c[0]], points[c[1]], points[c[2]]}, count, count, arrangement.near(ref.element), true, true});
+      families.push_back({.plane = {points[c[0]], points[c[1]], points[c[2]]},
+                          .first = count,
+                          .end = count,
+                          .near = arrangement.near(ref.element),
+                          .near_known = true,
+                          .whole = true});
       const auto [axis, turn] = projection_of(points, c);
       for (auto i = element.first; i < element.end && families.back().whole; ++i) {
         const auto& v = arrangement.children[i].v;
@@ -80,7 +89,10 @@ std::vector<FrontExit> exits_of(const Complex& complex, const Strip& strip, cons
         edges.find(chain[i], chain[i + 1], on_k);
         if (!on_k.empty() || std::binary_search(inside.begin(), inside.end(), chain[i])) continue;
         const auto [from, to] = u.valid() ? std::pair(i, i + 1) : std::pair(i + 1, i);
-        exits.push_back({vertex[chain[from]], arrangement.points()[chain[to]], vertex[chain[to]], arrangement.near(t)});
+        exits.push_back({.from = vertex[chain[from]],
+                         .to = arrangement.points()[chain[to]],
+                         .at = vertex[chain[to]],
+                         .near = arrangement.near(t)});
       }
     }
   return exits;
@@ -136,7 +148,9 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
         moved[vertex[l].value - complex.vertex_count()] = arrangement.points().error(l) > 0;
     std::vector<FrontExit> exits;
     if (*clearance > 0) exits = exits_of(complex, strip, arrangement, edges, kept, vertex);
-    if (const Fault fault = snap_repair(complex, edit, {families, moved, *clearance, exits}, stats.repairs))
+    if (const Fault fault =
+            snap_repair(complex, edit, {.families = families, .moved = moved, .clearance = *clearance, .exits = exits},
+                        stats.repairs))
       throw GeometryError(fault.what);
     stats.guard_seconds += watch.lap();
   }

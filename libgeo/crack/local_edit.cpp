@@ -32,7 +32,12 @@ class EditBuilder {
     const FaceId id(k_.face_count() + static_cast<std::uint32_t>(local.edit.new_faces.size()));
     const auto index = static_cast<std::uint32_t>(local.edit.new_faces.size());
     local.edit.new_faces.push_back({v, k_.face(parent).crack, parent});
-    local.families.push_back({k_.corners(parent), index, index + 1, {}, false, false});
+    local.families.push_back({.plane = k_.corners(parent),
+                              .first = index,
+                              .end = index + 1,
+                              .near = {},
+                              .near_known = false,
+                              .whole = false});
     return id;
   }
   /// Adds f with vertex `now` for `old`.

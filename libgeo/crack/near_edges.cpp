@@ -16,7 +16,7 @@ namespace {
 
 // A strip through edges of the skin meets one or two with each of its triangles. One that lies in a
 // sheet is near all edges of that, and each division makes more of them.
-constexpr std::size_t most_places_per_triangle = 2;
+constexpr std::size_t max_places_per_triangle = 2;
 
 // Least distance of places, in reaches. Nearer ones would move the strip to and fro by as much as
 // it is long between them.
@@ -214,7 +214,7 @@ ComplexEdit divide_near_edges(const Complex& complex, const Strip& strip, double
   const auto places = NearEdges(complex, strip, reach).run();
   std::size_t count = 0;
   for (const auto& [edge, at] : places) count += at.size();
-  if (count > most_places_per_triangle * strip.triangles.size()) return {};
+  if (count > max_places_per_triangle * strip.triangles.size()) return {};
   EdgeDivider edges(complex);
   for (const auto& [edge, at] : places) edges.divide(edge, at);
   ComplexEdit edit = edges.edit();

@@ -16,7 +16,7 @@ namespace geo::crack {
 namespace {
 
 // A round halves the motions of vertices whose triangles cross, so that 64 reach below rounding.
-constexpr int most_rounds = 64;
+constexpr int max_rounds = 64;
 
 using Key = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -127,7 +127,8 @@ std::vector<Motion> motions_of(const TriangleMesh& mesh, std::vector<std::uint32
     for (const auto v : vertices) {
       if (v == *widest) continue;
       motion_of[v] = static_cast<std::uint32_t>(motions.size());
-      motions.push_back({v, mesh.vertices[v], -fans[v].outwards, 0x1p-12 * fans[v].shortest});
+      motions.push_back(
+          {.vertex = v, .from = mesh.vertices[v], .inwards = -fans[v].outwards, .length = 0x1p-12 * fans[v].shortest});
     }
   }
   return motions;
@@ -215,7 +216,7 @@ void move_apart(TriangleMesh& mesh) {
   Random random(mesh.triangles.size());
   CrossingPairs crossing(mesh);
   for (int rounds = 0; !crossing.pairs().empty(); ++rounds) {
-    if (rounds == most_rounds) throw GeometryError("parts that touch cannot be moved apart");
+    if (rounds == max_rounds) throw GeometryError("parts that touch cannot be moved apart");
     std::vector<std::uint32_t> moved;
     for (const auto m : motions_in(mesh, crossing.pairs(), motion_of)) {
       motions[m].length *= 0.5;

@@ -1,4 +1,4 @@
-// self_union() of kerf/crack.h. The triangles cut a box into cells. The generalized winding number
+// self_union() of kerf/repair.h. The triangles cut a box into cells. The generalized winding number
 // at a point of each cell decides whether it is solid (Jacobson, Kavan and Sorkine-Hornung 2013).
 // Faces that do not separate solid from empty cells are removed from the crack complex.
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/pieces.h"
+#include "kerf/repair.h"
 #include "surface/piece_sides.h"
 
 namespace geo {
@@ -152,6 +153,8 @@ TriangleMesh self_union(const TriangleMesh& mesh, const CrackOptions& options, S
   return std::move(result);
 }
 
+TriangleMesh self_union(const TriangleMesh& mesh, SelfUnionStats* stats) { return self_union(mesh, {}, stats); }
+
 TriangleMesh repaired_solid(TriangleMesh mesh, const RepairOptions& options, SolidRepairStats* stats) {
   SolidRepairStats done;
   done.repair = repair(mesh, options);
@@ -159,7 +162,7 @@ TriangleMesh repaired_solid(TriangleMesh mesh, const RepairOptions& options, Sol
   try {
     require_solid(mesh);
   } catch (const InputError&) {
-    mesh = self_union(mesh, {}, &done.united.emplace());
+    mesh = self_union(mesh, &done.united.emplace());
     require_solid(mesh);
   }
   if (stats) *stats = done;

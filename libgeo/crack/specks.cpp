@@ -13,21 +13,21 @@ std::uint64_t key_of(Side s) { return 2 * std::uint64_t(s.face.value) + static_c
 
 class SpeckSearch {
  public:
-  SpeckSearch(const Complex& complex, const std::vector<FaceId>& fresh, double thickness, std::size_t most_sides)
-      : complex_(complex), fresh_(fresh), thickness_(thickness), most_sides_(most_sides) {}
+  SpeckSearch(const Complex& complex, const std::vector<FaceId>& fresh, double thickness, std::size_t max_sides)
+      : complex_(complex), fresh_(fresh), thickness_(thickness), max_sides_(max_sides) {}
 
   // Whether the part of the surface with this side is a speck that was not visited before.
   bool is_speck(Side start) {
     if (!complex_.has(start) || !visited_.insert(key_of(start)).second) return false;
     part_.assign(1, start);
     for (std::size_t i = 0; i < part_.size(); ++i) {
-      if (part_.size() > most_sides_) return false;
+      if (part_.size() > max_sides_) return false;
       for (int k = 0; k < 3; ++k) {
         const Side next = complex_.neighbor(part_[i], k);
         if (visited_.insert(key_of(next)).second)
           part_.push_back(next);
         else if (!has(next))
-          return false;  // larger than most_sides: an earlier walk gave up there
+          return false;  // larger than max_sides: an earlier walk gave up there
       }
     }
     return is_thin();
@@ -80,7 +80,7 @@ class SpeckSearch {
   const Complex& complex_;
   const std::vector<FaceId>& fresh_;  // ascending
   double thickness_;
-  std::size_t most_sides_;
+  std::size_t max_sides_;
   std::unordered_set<std::uint64_t> visited_;
   std::vector<Side> part_;
 };
@@ -88,8 +88,8 @@ class SpeckSearch {
 }  // namespace
 
 std::vector<FaceId> find_specks(const Complex& complex, const CrackDelta& delta, double thickness,
-                                std::size_t most_sides) {
-  SpeckSearch search(complex, delta.new_faces, thickness, most_sides);
+                                std::size_t max_sides) {
+  SpeckSearch search(complex, delta.new_faces, thickness, max_sides);
   std::vector<FaceId> joints;
   for (const FaceId f : delta.new_faces)
     for (int which = 0; which < 2 && complex.alive(f); ++which) {

@@ -8,11 +8,11 @@
 namespace geo::crack {
 
 /// The specks that a step has cut off. A speck is a closed part of the derived surface with at most
-/// `most_sides` sides, whose volume over half of its area is less than `thickness` (model units).
+/// `max_sides` sides, whose volume over half of its area is less than `thickness` (model units).
 /// Returns one new face of a crack for each, which lies between the speck and the rest. Without
 /// that face, the speck is a part of what is behind it. `delta`: of the step. Cost follows the new
 /// faces.
 std::vector<FaceId> find_specks(const Complex& complex, const CrackDelta& delta, double thickness,
-                                std::size_t most_sides = 64);
+                                std::size_t max_sides = 64);
 
 }  // namespace geo::crack

@@ -29,7 +29,7 @@ WindingNumber::WindingNumber(std::vector<std::array<Vec3, 3>> triangles) : trian
 
 void WindingNumber::add_node(std::uint32_t first, std::uint32_t end) {
   const std::size_t index = nodes_.size();
-  Node node{Vec3::Zero(), Vec3::Zero(), 0, first, end, 0};
+  Node node{.centroid = Vec3::Zero(), .area = Vec3::Zero(), .radius = 0, .first = first, .end = end, .next = 0};
   Box3 box;
   double weight = 0;
   for (auto t = first; t < end; ++t) {

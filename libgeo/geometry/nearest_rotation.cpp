@@ -9,7 +9,11 @@ namespace geo {
 NearestRotation nearest_rotation(const Mat3& a) {
   const Eigen::JacobiSVD<Mat3> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Mat3 sign = Vec3(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1).asDiagonal();
-  return {svd.matrixU() * sign * svd.matrixV().transpose(), svd.singularValues(), svd.matrixU(), sign, svd.matrixV()};
+  return {.rotation = svd.matrixU() * sign * svd.matrixV().transpose(),
+          .singular_values = svd.singularValues(),
+          .u = svd.matrixU(),
+          .sign = sign,
+          .v = svd.matrixV()};
 }
 
 }  // namespace geo

@@ -152,7 +152,9 @@ std::size_t TriangleIndex::level_of(const Box3& box) const {
 
 // Ensures that the level with this exponent exists, and all levels between it and the others.
 void TriangleIndex::add_levels(int exponent) {
-  const auto empty_level = [](int e) { return Level{e, std::ldexp(1.0, e), std::vector<Slot>(64), {}}; };
+  const auto empty_level = [](int e) {
+    return Level{.exponent = e, .cell = std::ldexp(1.0, e), .slots = std::vector<Slot>(64), .blocks = {}};
+  };
   if (levels_.empty()) levels_.push_back(empty_level(exponent));
   while (levels_.front().exponent > exponent)
     levels_.insert(levels_.begin(), empty_level(levels_.front().exponent - 2));

@@ -63,7 +63,7 @@ VisibilityGraph build_visibility_graph(const NodeSet& nodes, const TriangleBvh& 
     pairs.resize(kept);
   }
   VisibilityGraph graph;
-  graph.storage() = GraphStorage::from_edges(nodes, std::move(pairs));
+  GraphStorage::of(graph) = GraphStorage::from_edges(nodes, std::move(pairs));
   return graph;
 }
 

@@ -43,7 +43,7 @@ CutPairs rows_of(std::span<const Pair> pairs, IdNumbering& ids, const std::vecto
   std::uint32_t sum = 0;
   ids.each([&](std::uint32_t id, std::uint32_t k) {
     const auto count = std::exchange(next[k], sum);
-    cut.rows.push_back({id, sum, sum + count, above[k]});
+    cut.rows.push_back({.id = id, .begin = sum, .end = sum + count, .above = above[k]});
     sum += count;
   });
   std::vector<CutPairs::Entry> mixed(sum);

@@ -20,6 +20,11 @@ namespace geo {
 /// stored: they are functions of the nodes.
 class GraphStorage {
  public:
+  /// The storage of a graph.
+  static GraphStorage& of(VisibilityGraph& graph) { return *graph.storage_; }
+  /// As above, read-only.
+  static const GraphStorage& of(const VisibilityGraph& graph) { return *graph.storage_; }
+
   /// Is this the id of a guide?
   static constexpr bool is_guide(std::uint32_t id) { return VisibilityGraph::is_guide(id); }
   /// The index of an id in its store: nodes and guides each count from 0.

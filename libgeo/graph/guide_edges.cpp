@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "graph/graph_storage.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -59,7 +60,7 @@ void add_guide_edges(const NodeSet& nodes, std::span<const std::vector<std::uint
 
 void add_guides(const NodeSet& nodes, const NodeGrid& grid, const TriangleBvh& obstacles, std::span<const Guide> guides,
                 VisibilityGraph& visibility_graph) {
-  GraphStorage& graph = visibility_graph.storage();
+  GraphStorage& graph = GraphStorage::of(visibility_graph);
   const auto first = GraphStorage::guide_id(graph.guides().size());
   for (const Guide& guide : guides) graph.add_guide(guide);
   std::vector<std::vector<std::uint32_t>> visible(guides.size());

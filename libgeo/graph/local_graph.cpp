@@ -16,7 +16,7 @@ inline std::uint32_t LocalGraph::discover(std::uint32_t id) {
       discoveries_.resize(2 * discovered_ + 64);
       queued_.resize(discoveries_.size(), 0);
     }
-    discoveries_[discovered_++] = {id, unit_radius, 0, 0};
+    discoveries_[discovered_++] = {.id = id, .distance = unit_radius, .begin = 0, .end = 0};
   }
   return number;
 }
@@ -131,7 +131,7 @@ void LocalGraph::gather(const NodeSet& nodes, const GraphStorage& graph, std::sp
     number_[local] = number;
     local_[number] = local;
     const Vec3& p = graph.position(nodes, id);
-    points_[local] = {p.x(), p.y(), p.z(), graph.radius(nodes, id)};
+    points_[local] = {.x = p.x(), .y = p.y(), .z = p.z(), .radius = graph.radius(nodes, id)};
     nodes_ += !GraphStorage::is_guide(id);
     ++local;
   });

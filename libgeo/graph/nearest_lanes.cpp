@@ -34,7 +34,7 @@ using Visit = std::function<void(NodeId, std::span<const NodeId>)>;
 constexpr double float_error = 0x1p-19;
 // A candidate's index replaces the low bits of its squared distance, so that all keys differ. That
 // changes the distance by a share of key_error at most.
-constexpr std::uint32_t most_keyed = 2048, most_ranked = 255;
+constexpr std::uint32_t max_keyed = 2048, max_ranked = 255;
 constexpr double key_error = 0x1p-12;
 
 struct Exact {
@@ -167,14 +167,14 @@ class GroupSearch {
     const hn::ScalableTag<float> d;
     const hn::RebindToUnsigned<decltype(d)> du;
     const std::size_t lanes = hn::Lanes(d);
-    const bool keyed = near_.size <= most_keyed;
+    const bool keyed = near_.size <= max_keyed;
     if (key_.size() < near_.size + 5 * lanes) key_.resize(2 * near_.size + 5 * lanes);
     double p[3];
     for (int axis = 0; axis < 3; ++axis) p[axis] = tree_.along(axis)[slot];
     const auto local = [&](int axis) { return hn::Set(d, static_cast<float>((p[axis] - middle_[axis]) * scale_)); };
     const auto px = local(0), py = local(1), pz = local(2);
     const auto limit = hn::Set(d, static_cast<float>(reach * scale_ * scale_ * (1 + 1e-6) + float_error));
-    const auto kept = hn::Set(du, keyed ? ~(most_keyed - 1) : 0u);
+    const auto kept = hn::Set(du, keyed ? ~(max_keyed - 1) : 0u);
     const float *const near_x = near_.along[0].data(), *const near_y = near_.along[1].data(),
                        *const near_z = near_.along[2].data();
     std::uint32_t* const keys = key_.data();
@@ -197,10 +197,10 @@ class GroupSearch {
       return Exact{square_of(tree_.along(0)[s] - p[0], tree_.along(1)[s] - p[1], tree_.along(2)[s] - p[2]),
                    tree_.nodes()[s]};
     };
-    if (keyed && count <= most_ranked) {
+    if (keyed && count <= max_ranked) {
       rank(count, exact);
     } else {
-      for (std::uint32_t i = 0; i < count; ++i) exact_[i] = exact(keyed ? keys[i] & (most_keyed - 1) : keys[i]);
+      for (std::uint32_t i = 0; i < count; ++i) exact_[i] = exact(keyed ? keys[i] & (max_keyed - 1) : keys[i]);
       std::nth_element(exact_.begin(), exact_.begin() + (wanted_ - 1), exact_.begin() + count);
       std::sort(exact_.begin(), exact_.begin() + wanted_);
     }
@@ -245,7 +245,7 @@ class GroupSearch {
     std::uint32_t taken = wanted_;
     while (taken < count && order_[taken] <= last) ++taken;
     // As a rule floats give the exact order already.
-    for (std::uint32_t i = 0; i < taken; ++i) exact_[i] = exact(order_[i] & (most_keyed - 1));
+    for (std::uint32_t i = 0; i < taken; ++i) exact_[i] = exact(order_[i] & (max_keyed - 1));
     bool ascend = true;
     for (std::uint32_t i = 1; i < taken; ++i) ascend &= exact_[i - 1].square < exact_[i].square;
     if (ascend) return;
@@ -267,7 +267,7 @@ class GroupSearch {
   std::vector<std::uint32_t> pending_, stack_, key_;  // key_: the squares of a node's candidates, and which they are
   std::vector<Exact> exact_;
   std::vector<NodeId> row_;
-  std::uint32_t rank_[2 * most_ranked], order_[most_ranked];
+  std::uint32_t rank_[2 * max_ranked], order_[max_ranked];
 };
 
 void nearest_of_groups(const NodeTree& tree, std::span<const std::uint32_t> groups, std::uint32_t k,

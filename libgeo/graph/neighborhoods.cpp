@@ -116,10 +116,10 @@ void build_neighborhoods(const NodeSet& nodes, VisibilityGraph& graph, const Tri
   AdjacencyStore rows;
   rows.resize(nodes.size());
   if (method == NeighborMethod::automatic)
-    search_all(nodes, graph.storage(), mark_hidden, rows);
+    search_all(nodes, GraphStorage::of(graph), mark_hidden, rows);
   else
-    search_by_reference(nodes, graph.storage(), mark_hidden, method, rows);
-  graph.storage().replace_rows(std::move(rows));
+    search_by_reference(nodes, GraphStorage::of(graph), mark_hidden, method, rows);
+  GraphStorage::of(graph).replace_rows(std::move(rows));
 }
 
 void build_neighborhoods(const NodeSet& nodes, VisibilityGraph& graph, std::span<const std::array<Vec3, 3>> obstacles,

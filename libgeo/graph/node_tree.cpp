@@ -126,8 +126,8 @@ class Splitter {
         std::partition_point(first, last, [&](std::uint64_t k) { return !(k >> (32 + bit) & 1); }) - keyed_.data());
     const auto left = static_cast<std::uint32_t>(cells.size());
     cells[job.cell].children = left;
-    cells.push_back({{}, {}, begin, middle, job.cell});
-    cells.push_back({{}, {}, middle, end, job.cell});
+    cells.push_back({.lo = {}, .hi = {}, .begin = begin, .end = middle, .parent = job.cell});
+    cells.push_back({.lo = {}, .hi = {}, .begin = middle, .end = end, .parent = job.cell});
     jobs.push_back({left + 1, bit - 1});
     jobs.push_back({left, bit - 1});
     return true;
@@ -161,7 +161,7 @@ NodeTree::NodeTree(std::span<const Vec3> positions) {
   }
 
   // Large cells are split one after another, the subtrees below them in parallel.
-  std::vector<Cell> top{{{0, 0, 0}, {0, 0, 0}, 0, n, 0}};
+  std::vector<Cell> top{{.lo = {0, 0, 0}, .hi = {0, 0, 0}, .begin = 0, .end = n, .parent = 0}};
   std::vector<Job> jobs{{0, code_bits - 1}}, small;
   while (!jobs.empty()) {
     const Job job = jobs.back();

@@ -409,7 +409,7 @@ void GraphUpdater::recompute_rows() {
 
 GraphUpdate update_graph(const GraphChange& change, VisibilityGraph& graph, const Progress& progress) {
   thread_local IdSet update;
-  GraphUpdater updater(change, graph.storage(), progress, update);
+  GraphUpdater updater(change, GraphStorage::of(graph), progress, update);
   updater.find_cut_edges();          // E_cut, and P_update from it
   updater.remove_edges();            // E \ E_cut
   updater.change_guides();           // § 8

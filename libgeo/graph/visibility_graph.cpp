@@ -31,7 +31,9 @@ std::uint32_t VisibilityGraph::components(std::vector<std::uint32_t>& component)
 }
 std::size_t VisibilityGraph::bytes() const { return storage_->bytes(); }
 
-bool operator==(const VisibilityGraph& a, const VisibilityGraph& b) { return a.storage().equals(b.storage()); }
+bool operator==(const VisibilityGraph& a, const VisibilityGraph& b) {
+  return GraphStorage::of(a).equals(GraphStorage::of(b));
+}
 
 namespace {
 

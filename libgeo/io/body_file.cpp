@@ -13,6 +13,7 @@
 #include "graph/graph_storage.h"
 #include "io/body_sections.h"
 #include "io/json_integer.h"
+#include "io/kerf_update.h"
 
 namespace geo {
 
@@ -38,12 +39,12 @@ namespace {
 
 struct Arrays {
   const Body& body;
-  TriangleMesh mesh;
-  std::vector<std::uint32_t> rows;  // of the mesh, by surface vertex
-  std::vector<std::uint32_t> master_node, master, parent, closest;
-  std::vector<std::array<std::uint32_t, 2>> guide_edges;
-  std::vector<std::uint8_t> about;
-  std::vector<KerfArray> all;
+  TriangleMesh mesh = {};
+  std::vector<std::uint32_t> rows = {};  // of the mesh, by surface vertex
+  std::vector<std::uint32_t> master_node = {}, master = {}, parent = {}, closest = {};
+  std::vector<std::array<std::uint32_t, 2>> guide_edges = {};
+  std::vector<std::uint8_t> about = {};
+  std::vector<KerfArray> all = {};
   template <class T>
   void add(const std::string& name, std::span<const T> values, std::uint64_t columns = 1) {
     all.push_back(kerf_array(name, values, columns));
@@ -80,7 +81,7 @@ void add_nodes(Arrays& a) {
 
 // Guides, where there are any. Their edges to nodes are in the adjacency of the nodes.
 void add_guides(Arrays& a) {
-  const GuideSet& guides = a.body.graph.storage().guides();
+  const GuideSet& guides = GraphStorage::of(a.body.graph).guides();
   if (guides.size() == 0) return;
   a.add<double>("guides/position", guides.size(), 3, [&guides](KerfSink& out) {
     for (std::uint32_t g = 0; g < guides.size(); ++g)
@@ -89,7 +90,7 @@ void add_guides(Arrays& a) {
   a.add<double>("guides/radius", guides.size(), 1, [&guides](KerfSink& out) {
     for (std::uint32_t g = 0; g < guides.size(); ++g) out.put(guides.radius(g));
   });
-  a.guide_edges = a.body.graph.storage().guide_edges();
+  a.guide_edges = GraphStorage::of(a.body.graph).guide_edges();
   a.add("guides/edges",
         std::span<const std::uint32_t>(a.guide_edges.empty() ? nullptr : a.guide_edges[0].data(),
                                        2 * a.guide_edges.size()),
@@ -99,7 +100,7 @@ void add_guides(Arrays& a) {
 // Edges and neighbours. Lengths of rows, not offsets: a change in one row leaves the others as they
 // are.
 void add_rows(Arrays& a) {
-  const AdjacencyStore& rows = a.body.graph.storage().rows();
+  const AdjacencyStore& rows = GraphStorage::of(a.body.graph).rows();
   const std::size_t n = rows.size();
   std::uint64_t entries = 0, paths = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -113,7 +114,7 @@ void add_rows(Arrays& a) {
     };
   };
   a.add<double>("graph/plain_unit", 1, 1,
-                [&body = a.body](KerfSink& out) { out.put(body.graph.storage().plain_unit()); });
+                [&body = a.body](KerfSink& out) { out.put(GraphStorage::of(body.graph).plain_unit()); });
   a.add<std::uint32_t>("graph/count", n, 1, [&rows, n](KerfSink& out) {
     for (std::size_t i = 0; i < n; ++i) out.put(static_cast<std::uint32_t>(rows.entries(i).to.size()));
   });
@@ -261,7 +262,8 @@ void read_old_rows(const KerfFile& in, Body& body, double unit) {
       if (AdjacencyRow::has_path(entry.first)) paths.push_back(entry.second);
     }
   }
-  body.graph.storage() = GraphStorage::from_arrays(nodes, unit, {count, to, bits, paths});
+  GraphStorage::of(body.graph) =
+      GraphStorage::from_arrays(nodes, unit, {.count = count, .to = to, .bits = bits, .paths = paths});
 }
 
 std::vector<Guide> read_guides(const KerfFile& in, std::vector<std::array<std::uint32_t, 2>>& edges) {
@@ -291,7 +293,8 @@ void read_rows(const KerfFile& in, Body& body) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   const auto guides = read_guides(in, edges);
   try {
-    body.graph.storage() = GraphStorage::from_arrays(body.nodes, unit[0], {count, to, bits, paths, guides, edges});
+    GraphStorage::of(body.graph) =
+        GraphStorage::from_arrays(body.nodes, unit[0], {count, to, bits, paths, guides, edges});
   } catch (const InputError& e) {
     in.fail(e.what());
   }
@@ -328,8 +331,10 @@ void read_about(const KerfFile& in, Body& body) {
     body.original_nodes = about.contains("sampled") ? json_integer<std::uint32_t>(about.at("sampled"))
                                                     : static_cast<std::uint32_t>(body.nodes.size());
     for (const auto& p : about.at("history"))
-      body.history.push_back({p.at("tool").get<std::string>(), p.at("version").get<std::string>(),
-                              p.at("arguments").get<std::string>(), p.at("inputs").get<std::vector<std::string>>()});
+      body.history.push_back({.tool = p.at("tool").get<std::string>(),
+                              .version = p.at("version").get<std::string>(),
+                              .arguments = p.at("arguments").get<std::string>(),
+                              .inputs = p.at("inputs").get<std::vector<std::string>>()});
   } catch (const nlohmann::json::exception&) {
     in.fail("section 'about' is malformed");
   } catch (const std::out_of_range&) {
@@ -350,16 +355,16 @@ void read_about(const KerfFile& in, Body& body) {
 void write_body(std::ostream& out, const Body& body) { write_body_with(out, body, {}); }
 
 void write_body_with(std::ostream& out, const Body& body, const std::vector<KerfArray>& more) {
-  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  Arrays a{.body = body};
   add_all(a);
   a.all.insert(a.all.end(), more.begin(), more.end());
   write_kerf(out, a.all);
 }
 
 std::uint64_t write_body(KerfUpdate& file, const Body& body) {
-  Arrays a{body, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  Arrays a{.body = body};
   add_all(a);
-  return file.commit(a.all);
+  return UpdatedFile::of(file).commit(a.all);
 }
 
 Body read_body(const KerfFile& file) {

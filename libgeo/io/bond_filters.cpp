@@ -115,7 +115,8 @@ class FilterFinder {
     std::map<std::int32_t, std::vector<BrokenBond>> result;
     std::vector<std::uint32_t> near;
     for (const auto& [i, j] : model_.broken) {
-      BrokenBond bond{body_.nodes.position[i.index()], body_.nodes.position[j.index()], {}, {}};
+      BrokenBond bond{
+          .p = body_.nodes.position[i.index()], .q = body_.nodes.position[j.index()], .at = {}, .normal = {}};
       near.clear();
       tree.near({bond.p.cwiseMin(bond.q), bond.p.cwiseMax(bond.q)}, near);
       std::sort(near.begin(), near.end());

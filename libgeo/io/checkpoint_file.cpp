@@ -201,8 +201,9 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
     more.push_back(kerf_array("run/glue_limits", std::span<const double>(glued.limits), 2));
   }
   if (!rotation.empty()) more.push_back(kerf_array("run/rotation", coordinates(rotation), 3));
-  more.push_back(
-      {"run/about", "json", {text.size()}, [&text](KerfSink& sink) { sink.write(std::as_bytes(std::span(text))); }});
+  more.push_back({.name = "run/about", .dtype = "json", .shape = {text.size()}, .fill = [&text](KerfSink& sink) {
+                    sink.write(std::as_bytes(std::span(text)));
+                  }});
   write_body_with(out, body, more);
 }
 

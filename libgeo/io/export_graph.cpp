@@ -59,14 +59,20 @@ void write_vtu(std::ostream& out, const Body& body) {
     std::function<void()> write;
   };
   const auto field = [&](const char* name, const std::vector<double>& values) {
-    return Part{"Float64", name, 1, 8 * n, [&] { put(out, values.data(), n); }};
+    return Part{
+        .type = "Float64", .name = name, .columns = 1, .bytes = 8 * n, .write = [&] { put(out, values.data(), n); }};
   };
-  const std::vector<Part> points{{"Float64", "Points", 3, 24 * n, [&] { put(out, nodes.position[0].data(), 3 * n); }}};
-  const std::vector<Part> fields{field("radius", nodes.radius),
-                                 field("spacing", nodes.spacing),
-                                 field("volume", nodes.volume),
-                                 {"UInt8", "debris", 1, n, [&] { put(out, body.debris.data(), n); }},
-                                 {"UInt32", "component", 1, 4 * n, [&] { put(out, component.data(), n); }}};
+  const auto position = [&] { put(out, nodes.position[0].data(), 3 * n); };
+  const auto debris = [&] { put(out, body.debris.data(), n); };
+  const auto component_of_nodes = [&] { put(out, component.data(), n); };
+  const std::vector<Part> points{
+      {.type = "Float64", .name = "Points", .columns = 3, .bytes = 24 * n, .write = position}};
+  const std::vector<Part> fields{
+      field("radius", nodes.radius),
+      field("spacing", nodes.spacing),
+      field("volume", nodes.volume),
+      {.type = "UInt8", .name = "debris", .columns = 1, .bytes = n, .write = debris},
+      {.type = "UInt32", .name = "component", .columns = 1, .bytes = 4 * n, .write = component_of_nodes}};
   const auto filled = [&](const auto& fill) {
     return [&out, fill] {
       KerfSink sink = into(out);
@@ -74,18 +80,22 @@ void write_vtu(std::ostream& out, const Body& body) {
       sink.finish();
     };
   };
-  const std::vector<Part> cells{{"Int64", "connectivity", 1, 16 * edges, filled([&](KerfSink& sink) {
-                                   each_edge(body, [&](std::uint32_t i, std::uint32_t j) {
-                                     sink.put(std::int64_t(i));
-                                     sink.put(std::int64_t(j));
-                                   });
-                                 })},
-                                {"Int64", "offsets", 1, 8 * edges, filled([&](KerfSink& sink) {
-                                   for (std::size_t e = 1; e <= edges; ++e) sink.put(static_cast<std::int64_t>(2 * e));
-                                 })},
-                                {"UInt8", "types", 1, edges, filled([&](KerfSink& sink) {
-                                   for (std::size_t e = 0; e < edges; ++e) sink.put(std::uint8_t(3));
-                                 })}};
+  const auto connectivity = filled([&](KerfSink& sink) {
+    each_edge(body, [&](std::uint32_t i, std::uint32_t j) {
+      sink.put(std::int64_t(i));
+      sink.put(std::int64_t(j));
+    });
+  });
+  const auto offsets = filled([&](KerfSink& sink) {
+    for (std::size_t e = 1; e <= edges; ++e) sink.put(static_cast<std::int64_t>(2 * e));
+  });
+  const auto types = filled([&](KerfSink& sink) {
+    for (std::size_t e = 0; e < edges; ++e) sink.put(std::uint8_t(3));  // lines
+  });
+  const std::vector<Part> cells{
+      {.type = "Int64", .name = "connectivity", .columns = 1, .bytes = 16 * edges, .write = connectivity},
+      {.type = "Int64", .name = "offsets", .columns = 1, .bytes = 8 * edges, .write = offsets},
+      {.type = "UInt8", .name = "types", .columns = 1, .bytes = edges, .write = types}};
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
          "header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\""
       << n << "\" NumberOfCells=\"" << edges << "\">\n";

@@ -57,7 +57,7 @@ void write_rows(std::ostream& out, const KerfFile& file, const std::string& name
     out << text;
     text.clear();
   });
-  file.stream(name, sink);
+  file.stream(name, into(sink));
   sink.finish();
   out << text << ']';
 }

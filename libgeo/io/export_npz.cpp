@@ -69,7 +69,7 @@ void write_npz(std::ostream& out, const KerfFile& file) {
     const auto pass = [&](const KerfSink::Take& take) {
       KerfSink sink(take);
       sink.write(std::as_bytes(std::span(header)));
-      file.stream(item.first, sink);
+      file.stream(item.first, into(sink));
       return sink.finish();
     };
     const std::uint64_t size = pass(sum);

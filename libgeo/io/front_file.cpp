@@ -77,11 +77,11 @@ std::vector<Front> parse(const std::string& bytes, const std::string& name, std:
     if (words[0] == "front") {
       if (words.size() < 2 || words.size() > 3 || (words.size() == 3 && words[2] != "closed"))
         lines.fail("write 'front NAME' or 'front NAME closed'");
-      fronts.push_back({std::string(words[1]), words.size() == 3, {}, {}});
+      fronts.push_back({.name = std::string(words[1]), .closed = words.size() == 3, .steps = {}, .triangles = {}});
       sheet = false;
     } else if (words[0] == "sheet") {
       if (words.size() != 2) lines.fail("write 'sheet NAME'");
-      fronts.push_back({std::string(words[1]), false, {{}}, {}});
+      fronts.push_back({.name = std::string(words[1]), .closed = false, .steps = {{}}, .triangles = {}});
       sheet = true;
     } else if (fronts.empty()) {
       if (words[0] == "v" || words[0] == "o" || words[0] == "l" || words[0] == "g" || words[0] == "mtllib")

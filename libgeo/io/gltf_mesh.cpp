@@ -115,9 +115,9 @@ class PrimitiveReader {
 
   // Joints in sets of four: JOINTS_0 with WEIGHTS_0 and so on.
   void read_joints() {
-    constexpr std::size_t most_sets = 16;
+    constexpr std::size_t max_sets = 16;
     std::vector<std::pair<const GltfRows*, const GltfRows*>> sets;
-    for (std::size_t k = 0; k < most_sets; ++k) {
+    for (std::size_t k = 0; k < max_sets; ++k) {
       const std::string number = std::to_string(k);
       const GltfRows *joints = rows("JOINTS_" + number, 4, 4), *weights = rows("WEIGHTS_" + number, 4, 4);
       if (!joints || !weights) break;

@@ -353,7 +353,7 @@ void KerfFile::read(const std::string& section, std::span<std::byte> out) const 
   if (hash != expected) fail("section '" + shown(section) + "' does not match its hash");
 }
 
-void KerfFile::stream(const std::string& section, KerfSink& sink) const {
+void KerfFile::stream(const std::string& section, const std::function<void(std::span<const std::byte>)>& take) const {
   const Section& s = impl_->sections.at(section);
   const std::vector<Extent>& from = impl_->extents.at(section);
   const bool in_blocks = impl_->version > 1;
@@ -364,7 +364,7 @@ void KerfFile::stream(const std::string& section, KerfSink& sink) const {
         std::span(block).first(static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), s.bytes - at)));
     impl_->fetch(from, at, part);
     hashes.push_back(kerf::hash_of(part.data(), part.size()));
-    sink.write(part);
+    take(part);
   }
   const auto hash = in_blocks || s.bytes == 0 ? kerf::hash_of(hashes) : hashes[0];
   if (hash != s.hash) fail("section '" + shown(section) + "' does not match its hash");
@@ -375,7 +375,9 @@ void write_compacted(std::ostream& out, const KerfFile& file) {
   for (const auto& [name, section] : file.sections())
     if (kerf::size_of(section.dtype) != 0)
       arrays.push_back(
-          {name, section.dtype, section.shape, [&file, key = name](KerfSink& sink) { file.stream(key, sink); }});
+          {.name = name, .dtype = section.dtype, .shape = section.shape, .fill = [&file, key = name](KerfSink& sink) {
+             file.stream(key, into(sink));
+           }});
   write_kerf(out, arrays);
 }
 

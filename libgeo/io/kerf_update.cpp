@@ -1,6 +1,8 @@
-// KerfUpdate of kerf/body_file.h. Under a file lock, sections whose hashes differ are appended as
-// one segment: whole, or as runs of rows if these are shorter. The commit record is written after
-// fsync(), so a crash leaves the old state.
+// Under a file lock, sections whose hashes differ are appended as one segment: whole, or as runs of
+// rows if these are shorter. The commit record is written after fsync(), so a crash leaves the old
+// state.
+#include "io/kerf_update.h"
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -9,12 +11,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <optional>
 
 #include "io/kerf_delta.h"
-#include "io/kerf_segment.h"
-#include "io/kerf_writer.h"
-#include "kerf/body_file.h"
 #include "kerf/error.h"
 #include "kerf/files.h"
 
@@ -41,7 +39,7 @@ std::vector<std::byte> all_of(const KerfArray& array) {
 // differ.
 kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::uint64_t hash, const KerfFile& file) {
   const KerfFile::Section& old = file.sections().at(array.name);
-  kerf::Stored s{array, {}, 0, hash};
+  kerf::Stored s{.array = array, .runs = {}, .literal_rows = 0, .hash = hash};
   const std::uint64_t width = kerf::row_bytes(array.dtype, array.shape);
   const bool comparable = !array.shape.empty() && array.dtype == old.dtype && array.shape.size() == old.shape.size() &&
                           std::equal(array.shape.begin() + 1, array.shape.end(), old.shape.begin() + 1);
@@ -75,130 +73,116 @@ kerf::Stored stored(const KerfArray& array, std::vector<std::byte> after, std::u
 
 }  // namespace
 
-struct KerfUpdate::Impl {
-  explicit Impl(const std::string& path_in);
-  ~Impl() { ::close(descriptor); }
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  void require_same_file() const;
-  void write(std::uint64_t offset, std::span<const std::byte> bytes) const;
-  void sync() const;
-  std::vector<kerf::Stored> changes(const std::vector<KerfArray>& arrays) const;
-  void append(const std::vector<kerf::Stored>& changed);
-
-  std::string path;
-  int descriptor = -1;
-  std::optional<KerfFile> file;
-};
-
-KerfUpdate::Impl::Impl(const std::string& path_in) : path(path_in) {
-  Input input(path);  // throws where the file is missing, empty or a folder
+UpdatedFile::UpdatedFile(const std::string& path) : path_(path) {
+  Input input(path_);  // throws where the file is missing, empty or a folder
   struct stat info {};
-  if (::stat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode))
-    throw OutputError(path + ": is no regular file and cannot be updated in place; write to another one");
-  descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
+  if (::stat(path_.c_str(), &info) != 0 || !S_ISREG(info.st_mode))
+    throw OutputError(path_ + ": is no regular file and cannot be updated in place; write to another one");
+  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor_ < 0) throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
   try {
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
-      throw OutputError(path + ": is being updated by another program; wait for it, or write to another file");
-    file.emplace(Input(path));  // read under the lock: no other program appends from here on
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+      throw OutputError(path_ + ": is being updated by another program; wait for it, or write to another file");
+    file_.emplace(Input(path_));  // read under the lock: no other program appends from here on
     require_same_file();
   } catch (...) {
-    ::close(descriptor);
+    ::close(descriptor_);
     throw;
   }
 }
 
+UpdatedFile::~UpdatedFile() { ::close(descriptor_); }
+
 // Another program may have replaced the file, which a lock does not prevent.
-void KerfUpdate::Impl::require_same_file() const {
+void UpdatedFile::require_same_file() const {
   struct stat ours {
   }, there{};
-  if (::fstat(descriptor, &ours) != 0 || ::stat(path.c_str(), &there) != 0 || ours.st_dev != there.st_dev ||
+  if (::fstat(descriptor_, &ours) != 0 || ::stat(path_.c_str(), &there) != 0 || ours.st_dev != there.st_dev ||
       ours.st_ino != there.st_ino)
-    throw OutputError(path + ": was replaced by another program; start again");
+    throw OutputError(path_ + ": was replaced by another program; start again");
 }
 
-void KerfUpdate::Impl::write(std::uint64_t offset, std::span<const std::byte> bytes) const {
+void UpdatedFile::write(std::uint64_t offset, std::span<const std::byte> bytes) const {
   while (!bytes.empty()) {
-    const auto n = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    const auto n = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
+    if (n <= 0) throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
     bytes = bytes.subspan(static_cast<std::size_t>(n));
     offset += static_cast<std::uint64_t>(n);
   }
 }
 
-void KerfUpdate::Impl::sync() const {
-  if (::fsync(descriptor) != 0) throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
+void UpdatedFile::sync() const {
+  if (::fsync(descriptor_) != 0) throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
 }
 
-std::vector<kerf::Stored> KerfUpdate::Impl::changes(const std::vector<KerfArray>& arrays) const {
+std::vector<kerf::Stored> UpdatedFile::changes(const std::vector<KerfArray>& arrays) const {
   std::vector<kerf::Stored> changed;
   for (const auto& array : arrays) {
-    const auto old = file->sections().find(array.name);
-    if (old == file->sections().end()) {
-      changed.push_back({array, {}, 0, 0});
+    const auto old = file_->sections().find(array.name);
+    if (old == file_->sections().end()) {
+      changed.push_back({.array = array, .runs = {}, .literal_rows = 0, .hash = 0});
       continue;
     }
     auto bytes = all_of(array);
     const std::uint64_t hash = hash_in_blocks(bytes);
     if (old->second.hash != hash || old->second.dtype != array.dtype || old->second.shape != array.shape)
-      changed.push_back(stored(array, std::move(bytes), hash, *file));
+      changed.push_back(stored(array, std::move(bytes), hash, *file_));
   }
   return changed;
 }
 
-void KerfUpdate::Impl::append(const std::vector<kerf::Stored>& changed) {
-  const std::uint64_t start = file->committed();
+void UpdatedFile::append(const std::vector<kerf::Stored>& changed) {
+  const std::uint64_t start = file_->committed();
   require_same_file();
   try {
-    if (::ftruncate(descriptor, static_cast<off_t>(start)) != 0)
-      throw OutputError(path + ": cannot be written (" + std::strerror(errno) + ")");
+    if (::ftruncate(descriptor_, static_cast<off_t>(start)) != 0)
+      throw OutputError(path_ + ": cannot be written (" + std::strerror(errno) + ")");
     std::uint64_t at = start;
     const auto put = [&](std::span<const std::byte> bytes) {
       write(at, bytes);
       at += bytes.size();
     };
-    const auto segment = kerf::write_segment(put, start, file->updates() + 1, file->fingerprint(), changed);
+    const auto segment = kerf::write_segment(put, start, file_->updates() + 1, file_->fingerprint(), changed);
     sync();  // the sections are on the disk before the commit record is
     put(kerf::bytes_of_one(segment));
     sync();
   } catch (...) {
-    [[maybe_unused]] const int ignored = ::ftruncate(descriptor, static_cast<off_t>(start));
+    [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(start));
     throw;
   }
 }
 
-KerfUpdate::KerfUpdate(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
-KerfUpdate::~KerfUpdate() = default;
-const KerfFile& KerfUpdate::file() const { return *impl_->file; }
-
-std::uint64_t KerfUpdate::commit(const std::vector<KerfArray>& arrays) {
+std::uint64_t UpdatedFile::commit(const std::vector<KerfArray>& arrays) {
   std::vector<kerf::Stored> whole;
-  for (const auto& array : arrays) whole.push_back({array, {}, 0, 0});
+  for (const auto& array : arrays) whole.push_back({.array = array, .runs = {}, .literal_rows = 0, .hash = 0});
   const std::uint64_t size = kerf::segment_size(0, whole);
-  const bool kept = std::all_of(file().sections().begin(), file().sections().end(), [&](const auto& s) {
+  const bool kept = std::all_of(file_->sections().begin(), file_->sections().end(), [&](const auto& s) {
     return std::any_of(arrays.begin(), arrays.end(), [&](const KerfArray& a) { return a.name == s.first; });
   });
-  if (kept && file().version() == kerf_format_version) {
-    const auto changed = impl_->changes(arrays);
-    const std::uint64_t added = kerf::segment_size(file().committed(), changed);
+  if (kept && file_->version() == kerf_format_version) {
+    const auto changed = changes(arrays);
+    const std::uint64_t added = kerf::segment_size(file_->committed(), changed);
     // Appends while the file is at most twice as long as a new one; else it is written anew.
-    if (file().committed() + added <= 2 * size) {
-      impl_->append(changed);
+    if (file_->committed() + added <= 2 * size) {
+      append(changed);
       return added;
     }
   }
-  impl_->require_same_file();
-  write_all(impl_->path, [&](std::ostream& out) { write_kerf(out, arrays); });
+  require_same_file();
+  write_all(path_, [&](std::ostream& out) { write_kerf(out, arrays); });
   return size;
 }
 
-void KerfUpdate::compact() {
-  impl_->require_same_file();
-  write_all(impl_->path, [&](std::ostream& out) { write_compacted(out, file()); });
+void UpdatedFile::compact() const {
+  require_same_file();
+  write_all(path_, [&](std::ostream& out) { write_compacted(out, *file_); });
 }
+
+KerfUpdate::KerfUpdate(const std::string& path) : file_(std::make_unique<UpdatedFile>(path)) {}
+KerfUpdate::~KerfUpdate() = default;
+const KerfFile& KerfUpdate::file() const { return file_->file(); }
+void KerfUpdate::compact() { file_->compact(); }
 
 bool same_file(const std::string& a, const std::string& b) {
   struct stat first {

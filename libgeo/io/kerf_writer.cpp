@@ -40,7 +40,7 @@ std::uint64_t KerfSink::finish() {
 
 void write_kerf(std::ostream& out, const std::vector<KerfArray>& arrays) {
   std::vector<kerf::Stored> sections;
-  for (const auto& a : arrays) sections.push_back({a, {}, 0, 0});
+  for (const auto& a : arrays) sections.push_back({.array = a, .runs = {}, .literal_rows = 0, .hash = 0});
   const auto put = [&](std::span<const std::byte> bytes) {
     out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   };

@@ -12,8 +12,7 @@
 
 namespace geo {
 
-/// Collects the bytes of one array in order, and passes them on in blocks: for writing, and for
-/// reading by KerfFile::stream().
+/// Collects the bytes of one array in order, and passes them on in blocks.
 class KerfSink {
  public:
   using Take = std::function<void(std::span<const std::byte>)>;
@@ -38,6 +37,11 @@ class KerfSink {
   std::size_t used_ = 0;
   std::uint64_t taken_ = 0;
 };
+
+/// A function that writes what it is given to a sink, as KerfFile::stream() takes it.
+inline KerfSink::Take into(KerfSink& sink) {
+  return [&sink](std::span<const std::byte> bytes) { sink.write(bytes); };
+}
 
 /// An array to write: type f8, f4, u8, u4, i4, u2, u1 or json, and shape; rows are the first
 /// dimension. `fill` puts exactly the bytes of that shape, each time it is called.
@@ -71,7 +75,7 @@ constexpr const char* kerf_dtype() {
 /// An array of `rows` × `columns` numbers of type T, which `fill` puts.
 template <class T>
 KerfArray kerf_array(std::string name, std::uint64_t rows, std::uint64_t columns, std::function<void(KerfSink&)> fill) {
-  KerfArray a{std::move(name), kerf_dtype<T>(), {rows}, std::move(fill)};
+  KerfArray a{.name = std::move(name), .dtype = kerf_dtype<T>(), .shape = {rows}, .fill = std::move(fill)};
   if (columns > 1) a.shape.push_back(columns);
   return a;
 }

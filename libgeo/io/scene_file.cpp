@@ -81,7 +81,7 @@ void read_rotation(TomlTable& t, Pose& place, const std::string& what) {
   }
   if (!node) return;
   const auto v = t.row(*node, 4, "'" + what + "'");
-  const Motion turn{{{0, Vec3::Zero(), {v[0], v[1], v[2]}, v[3]}}};
+  const Motion turn{{{.time = 0, .position = Vec3::Zero(), .axis = {v[0], v[1], v[2]}, .angle = v[3]}}};
   if (const auto wrong = unfit(turn.keys); !wrong.empty()) t.fail(*node, wrong);
   place.rotation = turn.at(0).rotation;
 }
@@ -116,14 +116,16 @@ void read_body_table(TomlTable& t, Scene& s) {
     read_strength(own, s.fracture.per_body.back());
     refuse_shared(own, "fracture", {"speed", "branching", "apart", "cracks", "cracks_per_step", "start", "off"});
   });
-  for (const auto& v : t.rows("fixed", 6)) s.grips.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {}, false});
+  for (const auto& v : t.rows("fixed", 6))
+    s.grips.push_back({.lo = {v[0], v[1], v[2]}, .hi = {v[3], v[4], v[5]}, .motion = {}, .release = false});
   s.bodies.push_back(std::move(body));
 }
 
 // Reads keyframes [time, x, y, z, ax, ay, az, degrees], in the scene or in a file.
 Motion read_motion(TomlTable& t, Files& files) {
   Motion motion;
-  for (const auto& v : t.rows("keys", 8)) motion.keys.push_back({v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6]}, v[7]});
+  for (const auto& v : t.rows("keys", 8))
+    motion.keys.push_back({.time = v[0], .position = {v[1], v[2], v[3]}, .axis = {v[4], v[5], v[6]}, .angle = v[7]});
   std::string file;
   t.get("motion", file);
   if (!file.empty() && !motion.keys.empty()) t.fail(*t.find("motion"), "give 'keys' or 'motion', not both");
@@ -336,7 +338,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     const auto* box = t.find("box");
     if (!box) t.missing("box", "x0, y0, z0, x1, y1, z1");
     const auto v = t.row(*box, 6, "'grip.box'");
-    Grip grip{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, read_motion(t, files), false};
+    Grip grip{.lo = {v[0], v[1], v[2]}, .hi = {v[3], v[4], v[5]}, .motion = read_motion(t, files), .release = false};
     t.get("release", grip.release);
     t.get("from", grip.from, -1e9, 1e9);
     t.get("until", grip.until, -1e9, 1e9);

@@ -73,7 +73,7 @@ std::vector<Motion::Key> parse_motion(const std::string& text, const std::string
       lines.fail("has " + std::to_string(words.size()) + " numbers; a line is: time, x, y, z, ax, ay, az, degrees");
     double v[8];
     for (int i = 0; i < 8; ++i) v[i] = lines.real(words[static_cast<std::size_t>(i)]);
-    keys.push_back({v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6]}, v[7]});
+    keys.push_back({.time = v[0], .position = {v[1], v[2], v[3]}, .axis = {v[4], v[5], v[6]}, .angle = v[7]});
     if (const auto wrong = unfit(keys); !wrong.empty()) lines.fail(wrong);
   }
   return keys;

@@ -119,9 +119,9 @@ std::string read_all(const std::string& path) {
       ::close(fd);
       throw InputError(path + ": is a folder; give a file");
     }
-    constexpr std::size_t most_at_once = 1u << 30;  // the size that a file system reports may be wrong
+    constexpr std::size_t max_at_once = 1u << 30;  // the size that a file system reports may be wrong
     if (S_ISREG(info.st_mode))
-      bytes.reserve(std::min<std::size_t>(static_cast<std::size_t>(info.st_size), most_at_once));
+      bytes.reserve(std::min<std::size_t>(static_cast<std::size_t>(info.st_size), max_at_once));
   }
   if (path == "-" && ::isatty(0)) throw InputError("-: standard input is a terminal; give a file or a pipe");
   char chunk[1 << 16];

@@ -35,7 +35,7 @@ std::string with_single_blanks(const std::string& text) {
 class GltfReader {
  public:
   GltfReader(const std::string& bytes, const std::string& name)
-      : document_(bytes, name), most_triangles_(5'000'000 + bytes.size()) {
+      : document_(bytes, name), max_triangles_(5'000'000 + bytes.size()) {
     const std::size_t meshes = document_.count("meshes");
     for (std::size_t i = 0; i < meshes; ++i)
       for (const Description& primitive : primitives_of(i)) look_at(primitive);
@@ -117,16 +117,16 @@ class GltfReader {
       bool hidden;
     };
     const std::size_t nodes = document_.count("nodes");
-    const std::size_t most_visits = 1'000'000 + nodes;  // of nodes that others share; more than files have
+    const std::size_t max_visits = 1'000'000 + nodes;  // of nodes that others share; more than files have
     std::vector<Visit> open;
     for (std::size_t i = roots.size(); i > 0; --i)
-      open.push_back({roots[i - 1], 0, Eigen::Affine3d::Identity(), false});
+      open.push_back({.node = roots[i - 1], .depth = 0, .outer = Eigen::Affine3d::Identity(), .hidden = false});
     while (!open.empty()) {
       const Visit visit = open.back();
       open.pop_back();
       const Description& node = document_.entry("nodes", visit.node);
       if (visit.depth > nodes) document_.fail("has a node that is below itself");
-      if (places_.size() > most_visits) document_.fail("places more than a million nodes");
+      if (places_.size() > max_visits) document_.fail("places more than a million nodes");
       const Eigen::Affine3d place = visit.outer * transform_of(document_, node);
       const bool hidden = visit.hidden || GltfDocument::member(GltfDocument::extension(node, "KHR_node_visibility"),
                                                                "visible") == false;
@@ -134,7 +134,7 @@ class GltfReader {
       places_.push_back({visit.node, place, hidden});
       const auto children = document_.indices(node, "children");
       for (std::size_t i = children.size(); i > 0; --i)
-        open.push_back({children[i - 1], visit.depth + 1, place, hidden});
+        open.push_back({.node = children[i - 1], .depth = visit.depth + 1, .outer = place, .hidden = hidden});
     }
   }
 
@@ -277,8 +277,8 @@ class GltfReader {
 
   void add_placed(const GltfPrimitive& part, const std::vector<Vec3>& at, const std::vector<Vec3>& normal,
                   bool mirrored, std::int32_t group) {
-    if (mesh().triangles.size() + part.triangles.size() > most_triangles_)
-      document_.fail("places more than " + std::to_string(most_triangles_) + " triangles");
+    if (mesh().triangles.size() + part.triangles.size() > max_triangles_)
+      document_.fail("places more than " + std::to_string(max_triangles_) + " triangles");
     const auto first = static_cast<std::uint32_t>(mesh().vertices.size());
     mesh().vertices.insert(mesh().vertices.end(), at.begin(), at.end());
     Attributes& a = mesh().attributes;
@@ -343,7 +343,7 @@ class GltfReader {
   GltfDocument document_;
   // Nodes and instances may repeat triangles: 1 GB, with some 200 bytes for each. A triangle that
   // the file stores has a byte at least.
-  const std::size_t most_triangles_;
+  const std::size_t max_triangles_;
   bool uv_ = false, uv2_ = false, normal_ = false, color_ = false;  // whether some mesh has them
   std::set<std::string> others_;                                    // attributes that are left out
   std::vector<Placed> places_;

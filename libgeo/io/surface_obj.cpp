@@ -134,7 +134,10 @@ class ObjReader {
       any_uv_ = any_uv_ || !vt.empty();
       any_normal_ = any_normal_ || !vn.empty();
     }
-    faces_.push_back({corners_.size(), lines_.number(), materials_.row(material_), parts_.row(part_)});
+    faces_.push_back({.end = corners_.size(),
+                      .line = lines_.number(),
+                      .material = materials_.row(material_),
+                      .part = parts_.row(part_)});
   }
 
   void require(const Face& face, std::uint32_t row, std::size_t count, const char* what) const {

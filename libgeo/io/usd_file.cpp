@@ -134,7 +134,7 @@ void write_usda(std::ostream& out, const UsdRun& run) {
   }
   begin_mesh(out, "body", "skin");
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
-  constexpr std::size_t most_kept = 16;      // larger: more memory, fewer frames are read twice
+  constexpr std::size_t max_kept = 16;       // larger: more memory, fewer frames are read twice
   Frames cut;                                // whose triangles differ from those of the frame before
   std::map<std::size_t, TriangleMesh> kept;  // of the first of these frames, which are not read again
   TriangleMesh last;
@@ -150,7 +150,7 @@ void write_usda(std::ostream& out, const UsdRun& run) {
       if (i > 0 && same_rows(made.second, last)) return;
       cut.push_back(i);
       last = rows_of(std::move(made.second));
-      if (kept.size() < most_kept) kept.emplace(i, last);
+      if (kept.size() < max_kept) kept.emplace(i, last);
     });
   }
   const auto rows = [&](std::size_t i) { return kept.contains(i) ? kept.at(i) : run.surface(i); };

@@ -1,4 +1,4 @@
-// read_volume(), wrapped(), wrapped_solid() and write_level_set() of kerf/files.h. Through OpenVDB:
+// read_volume() and write_level_set() of kerf/files.h, wrapped() of kerf/repair.h. Through OpenVDB:
 // volumeToMesh() gives the surface at an iso-value, meshToLevelSet() a level set from a closed
 // surface, meshToUnsignedDistanceField() distances from open sheets.
 #include "kerf/files.h"
@@ -22,6 +22,7 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "kerf/progress.h"
+#include "kerf/repair.h"
 #include "surface/shells.h"
 
 namespace geo {
@@ -191,7 +192,7 @@ std::optional<TriangleMesh> coarse_plate(const TriangleMesh& sheets, double voxe
   TriangleMesh mesh = surface_of(*plate_of(scaled, 1, progress), {}, "the level set");
   halve_plate(mesh, scaled);
   for (Vec3& p : mesh.vertices) p = middle + voxel * p;
-  return check_surface(mesh, true).good() ? std::optional(std::move(mesh)) : std::nullopt;
+  return check_surface(mesh, SelfIntersections::find).good() ? std::optional(std::move(mesh)) : std::nullopt;
 }
 
 // The surface around closed parts and open sheets, without attributes. Where there are sheets,
@@ -268,7 +269,7 @@ TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions&
   take_attributes(joined(std::move(mesh), sheets), solid, progress);
   // In ambiguous cells OpenVDB's surface may touch itself.
   report(progress, "check", 0, 1);
-  if (!check_surface(solid, true).good()) solid = repaired_solid(std::move(solid));
+  if (!check_surface(solid, SelfIntersections::find).good()) solid = repaired_solid(std::move(solid));
   if (stats) *stats = done;
   return solid;
 }

@@ -16,6 +16,11 @@ namespace {
 // those below `hardly` never. Between them some have, so that the number is met. Models with flat
 // faces across the axes gain or lose all cells of a face at once, half filled; as a last resort
 // (`at_worst`) some of those have none.
+//
+// A face across the axes leaves shares between 0 and 1 with equal probability. So `surely` and
+// `hardly` make 32 % of the cells at the surface optional, which is the range within which the
+// number can be met at one spacing. Below 3 %, a node would stand within a thirtieth of a cell of
+// the surface. `at_worst` is above a half, so that half filled cells become optional.
 constexpr float surely = 0.35f, at_worst = 0.6f, hardly = 0.03f;
 
 std::size_t count_above(const LeafLists& lists, float share) {
@@ -85,8 +90,11 @@ std::optional<SpacedLeaves> LeafFinder::at(double spacing, int thin_levels, std:
     throw InputError("the spacing is less than 0.01 % of the model's diagonal; choose a larger one");
   Stopwatch clock;
   // The cells are centred on the body, so that a symmetric model is sampled symmetrically.
-  OctreeShape shape{
-      {box_.lo, std::ldexp(spacing, -thin_levels)}, 0, thin_levels + options_.levels - 1, thin_levels, options_.across};
+  OctreeShape shape{.lattice = {box_.lo, std::ldexp(spacing, -thin_levels)},
+                    .root = 0,
+                    .top = thin_levels + options_.levels - 1,
+                    .regular = thin_levels,
+                    .across = options_.across};
   shape.root = shape.top;
   const double coarse = shape.lattice.edge(shape.top);
   for (int i = 0; i < 3; ++i) {
@@ -95,7 +103,7 @@ std::optional<SpacedLeaves> LeafFinder::at(double spacing, int thin_levels, std:
     shape.lattice.origin[i] = box_.center()[i] - 0.5 * cells * coarse;
     while (std::ldexp(1.0, shape.root - shape.top) < cells) ++shape.root;
   }
-  SpacedLeaves found{{}, shape.lattice, {}, {}};
+  SpacedLeaves found{.lists = {}, .lattice = shape.lattice, .thin = {}, .selection = {}};
   report.spacing = spacing;
   const auto divided = plan_octree(tree_, shape, most, found.thin, progress_);
   report.octree_seconds += clock.lap();
@@ -117,7 +125,7 @@ SpacedLeaves LeafFinder::with_count(std::size_t count, double volume, SampleRepo
   const auto look = [&] {
     found.reset();
     found = at(spacing, thin, static_cast<std::size_t>(most), report);
-    nodes = found ? count_above(found->lists, float(least_share)) : static_cast<std::size_t>(2 * most);
+    nodes = found ? count_above(found->lists, float(least_leaf_share)) : static_cast<std::size_t>(2 * most);
   };
   for (look(); thin > 0 && nodes > count; look()) --thin;
   float sure = surely;

@@ -8,7 +8,7 @@ namespace geo {
 /// Decides which leaves get a node: a leaf with a larger share of material than `share`, or with
 /// the same share and a ticket of at least `ticket`.
 struct NodeSelection {
-  float share = float(least_share);
+  float share = float(least_leaf_share);
   std::uint64_t ticket = 0;
   /// The ticket of a leaf: a hash of its cell.
   static std::uint64_t ticket_of(const Leaf& leaf);

@@ -34,7 +34,7 @@ bool settle(const RegionTree& tree, const Region& region, const Box3& box, doubl
 
 Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region, const Vec3& shift) {
   const double edge = lattice.edge(region.cell.level);
-  Leaf leaf{region.cell, region.probe, 1, !region.cut(), true};
+  Leaf leaf{.cell = region.cell, .position = region.probe, .share = 1, .whole = !region.cut(), .node = true};
   if (leaf.whole && shift.cwiseAbs().maxCoeff() <= 0.5 - keep_off) {
     leaf.position += edge * shift;
     return leaf;
@@ -61,7 +61,7 @@ Leaf place(const RegionTree& tree, const Lattice& lattice, const Region& region,
     if (wall.area < edge * edge || !box.meets({wall.at, wall.at})) return leaf;
     leaf.position = wall.at;
     leaf.node = tree.inside(region, wall.at);
-    leaf.share = float(std::max(least_share, 0.5 * wall.thickness * wall.area / (edge * edge * edge)));
+    leaf.share = float(std::max(least_leaf_share, 0.5 * wall.thickness * wall.area / (edge * edge * edge)));
     return leaf;
   }
   const Vec3 middle = sum / count;

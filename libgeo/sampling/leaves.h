@@ -31,6 +31,6 @@ LeafLists find_leaves(const RegionTree& tree, const OctreeShape& shape, const Di
 constexpr double keep_off = 0.12;
 /// A cell with a smaller share of material gets no node; its volume goes to the nearest node.
 /// Larger: fewer nodes with little volume at the surface.
-constexpr double least_share = 0.1;
+constexpr double least_leaf_share = 0.1;
 
 }  // namespace geo

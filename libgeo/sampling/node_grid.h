@@ -68,11 +68,14 @@ class NodeGrid {
       return (p.x() >= middle.x()) | (p.y() >= middle.y()) << 1 | (p.z() >= middle.z()) << 2;
     }
   };
-  CellBounds root() const { return {0, middle_, half_, 0}; }
+  CellBounds root() const { return {.cell = 0, .middle = middle_, .half = half_, .depth = 0}; }
   CellBounds child(const CellBounds& parent, int octant) const {
     const double h = 0.5 * parent.half;
     const Vec3 step(octant & 1 ? h : -h, octant & 2 ? h : -h, octant & 4 ? h : -h);
-    return {cells_[parent.cell].first + static_cast<std::uint32_t>(octant), parent.middle + step, h, parent.depth + 1};
+    return {.cell = cells_[parent.cell].first + static_cast<std::uint32_t>(octant),
+            .middle = parent.middle + step,
+            .half = h,
+            .depth = parent.depth + 1};
   }
   CellBounds leaf_of(const Vec3& p) const;
   void put(std::span<const Vec3> positions, std::uint32_t index);

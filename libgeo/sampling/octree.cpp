@@ -78,8 +78,10 @@ std::optional<Divisions> plan_octree(const RegionTree& tree, const OctreeShape& 
     divide |= wall.thickness < std::numeric_limits<double>::infinity();
     if (divide) {
       ++count;
-      found.push_back({cell.level, morton(cell.corner), wall,
-                       cell.level > last || !(wall.thickness < across * shape.lattice.size)});
+      found.push_back({.level = cell.level,
+                       .code = morton(cell.corner),
+                       .wall = wall,
+                       .resolved = cell.level > last || !(wall.thickness < across * shape.lattice.size)});
     }
     return divide && cell.level > last;
   };

@@ -82,7 +82,7 @@ RegionTree::RegionTree(const TriangleMesh& solid) {
 }
 
 Region RegionTree::root(const Lattice& lattice, const Cell& cell) const {
-  Region region{cell, lattice.middle(cell), false, {}};
+  Region region{.cell = cell, .probe = lattice.middle(cell), .inside = false, .triangles = {}};
   region.inside = tree_.inside(region.probe);
   region.triangles.resize(corners_.size());
   for (std::uint32_t i = 0; i < region.triangles.size(); ++i) region.triangles[i] = i;
@@ -90,7 +90,7 @@ Region RegionTree::root(const Lattice& lattice, const Cell& cell) const {
 }
 
 Region RegionTree::at(const Lattice& lattice, const Cell& cell) const {
-  Region region{cell, lattice.middle(cell), false, {}};
+  Region region{.cell = cell, .probe = lattice.middle(cell), .inside = false, .triangles = {}};
   region.inside = tree_.inside(region.probe);
   const Box3 box = lattice.box(cell);
   tree_.near(box, region.triangles);
@@ -102,7 +102,7 @@ Region RegionTree::at(const Lattice& lattice, const Cell& cell) const {
 }
 
 Region RegionTree::child(const Lattice& lattice, const Region& region, const Cell& cell) const {
-  Region part{cell, lattice.middle(cell), region.inside, {}};
+  Region part{.cell = cell, .probe = lattice.middle(cell), .inside = region.inside, .triangles = {}};
   if (!region.cut()) return part;
   const Box3 box = lattice.box(cell);
   for (const auto triangle : region.triangles)

@@ -41,7 +41,7 @@ std::vector<OffsetSample> offset_samples(std::span<const std::array<Vec3, 3>> fa
         if (!near.empty()) continue;
         positions.push_back(p);
         grid.insert(positions, static_cast<std::uint32_t>(positions.size() - 1));
-        samples.push_back({p, base, spacing, f, side});
+        samples.push_back({.position = p, .base = base, .spacing = spacing, .face = f, .side = side});
       }
     }
   }

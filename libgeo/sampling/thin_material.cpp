@@ -11,13 +11,13 @@
 namespace geo {
 
 ThinMaterial find_thin_material(const TriangleMesh& solid, const NodeSet& nodes, double across) {
-  constexpr std::size_t most_triangles = 4096;
+  constexpr std::size_t max_triangles = 4096;
   constexpr double enough = 0.999;  // a spacing that is rounded to four digits suffices
   ThinMaterial thin;
   if (solid.triangles.empty() || nodes.size() == 0) return thin;
   const RegionTree tree(solid);
   const NodeGrid grid(nodes.spacing[0], nodes.position);
-  const std::size_t step = 1 + solid.triangles.size() / most_triangles;
+  const std::size_t step = 1 + solid.triangles.size() / max_triangles;
   struct Place {
     Wall wall;
     double spacing;

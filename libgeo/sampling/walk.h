@@ -37,9 +37,10 @@ std::vector<std::vector<Found>> walk(const RegionTree& tree, const Lattice& latt
     std::vector<Task> next;
     open = 0;
     for (Task& task : tasks) {
-      if (!task.found.empty()) next.push_back({{}, std::move(task.found), {}, false});
+      if (!task.found.empty())
+        next.push_back({.region = {}, .found = std::move(task.found), .parts = {}, .open = false});
       for (Region& part : task.parts) {
-        next.push_back({std::move(part), {}, {}, true});
+        next.push_back({.region = std::move(part), .found = {}, .parts = {}, .open = true});
         ++open;
       }
     }

@@ -170,9 +170,10 @@ class Bisection {
 
   std::uint32_t add_edge(std::uint32_t a, std::uint32_t b) {
     const auto edge = static_cast<std::uint32_t>(edges_.size());
-    edges_.push_back({std::min(a, b), std::max(a, b)});
+    edges_.push_back({.a = std::min(a, b), .b = std::max(a, b)});
     const double length2 = (walls_.vertices[a] - walls_.vertices[b]).squaredNorm();
-    if (length2 > longest_ * longest_) queue_.push({length2, std::min(a, b), std::max(a, b), edge});
+    if (length2 > longest_ * longest_)
+      queue_.push({.length2 = length2, .a = std::min(a, b), .b = std::max(a, b), .edge = edge});
     return edge;
   }
   void add_use(std::uint32_t edge, std::uint32_t triangle) {

@@ -142,7 +142,7 @@ MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction)
 MapAt::MapAt(const MovedBody& moved, const Blade& blade, double fraction, const Box3& box)
     : pose_(blade.motion.at(time_at(moved, fraction))),
       displacement_(resolved(moved.way.at(moved.motion.displacement, fraction), moved.body)),
-      gradient_(lazy_gradients(moved.solid.discretisation(), displacement_)),
+      gradient_(lazy_gradients(SolidDiscretisation::of(moved.solid), displacement_)),
       map_(moved.body, displacement_, gradient_, box) {}
 
 int number_of_cuts(const MovedBody& moved, const Blade& blade, std::span<const EdgeFront> fronts) {

@@ -88,7 +88,9 @@ FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
     }
   });
   smooth_along(g, separation);
-  FrontLoad load{std::vector<Vec3>(n, Vec3::Zero()), std::vector<double>(n, 0), std::move(resolved)};
+  FrontLoad load{.direction = std::vector<Vec3>(n, Vec3::Zero()),
+                 .ratio = std::vector<double>(n, 0),
+                 .resolved = std::move(resolved)};
   if (const auto any = std::find(load.resolved.begin(), load.resolved.end(), 1); any != load.resolved.end())
     load.node = node[static_cast<std::size_t>(any - load.resolved.begin())];
   for (std::size_t i = 0; i < n; ++i) {

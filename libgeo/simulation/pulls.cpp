@@ -58,7 +58,8 @@ void PullPotential::begin_step(const std::vector<Pull>& pulls, const Body& body,
       weights_[p] =
           point_weights(body, solid, pull.node ? NodeId(*pull.node) : nearest_node(body, pull.point), pull.point);
     const Vec3 from = pull.motion.at(time).position, to = pull.motion.at(end).position;
-    springs_.push_back({p, pull.point, from, to, to, pull.stiffness});
+    springs_.push_back(
+        {.pull = p, .point = pull.point, .begin = from, .end = to, .now = to, .stiffness = pull.stiffness});
   }
 }
 

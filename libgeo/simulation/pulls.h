@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "kerf/body.h"
+#include "kerf/potential.h"
 #include "kerf/scene.h"
 #include "kerf/solid.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 

@@ -228,7 +228,7 @@ void refuse_inner_bodies(const Assembly& assembly, const std::vector<TriangleMes
 }
 
 bool crosses_nothing(const TriangleMesh& mesh) {
-  const SurfaceReport report = check_surface(mesh, true);
+  const SurfaceReport report = check_surface(mesh, SelfIntersections::find);
   return report.self_intersections == std::size_t(0) && report.degenerate_faces == 0;
 }
 
@@ -241,7 +241,11 @@ std::pair<std::uint32_t, std::uint32_t> first_bodies(const Assembly& assembly, c
 }  // namespace
 
 void part_touching_bodies(const Scene& scene, PlacedModels& models) {
-  Assembly assembly{scene, models.all, {}, models.all.vertices, ContactOptions{}.gap * mean_edge(models.all)};
+  Assembly assembly{.scene = scene,
+                    .all = models.all,
+                    .body_of = {},
+                    .before = models.all.vertices,
+                    .gap = ContactOptions{}.gap * mean_edge(models.all)};
   for (std::uint32_t b = 0; b < models.bodies.size(); ++b)
     assembly.body_of.resize(assembly.body_of.size() + models.bodies[b].triangles.size(), b);
   const AabbTree::Pairs touching = near_pairs(assembly);

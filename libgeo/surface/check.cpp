@@ -39,7 +39,7 @@ Edges edges_of(const TriangleMesh& mesh) {
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       const auto a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      auto& e = edges.try_emplace(edge_key(a, b), EdgeUses{0, 0, t, t}).first->second;
+      auto& e = edges.try_emplace(edge_key(a, b), EdgeUses{.up = 0, .down = 0, .first = t, .last = t}).first->second;
       ++(a < b ? e.up : e.down);
       e.last = t;
     }
@@ -178,7 +178,7 @@ bool in_radial_order(const Vec3& a, const Vec3& b, std::span<const Vec3> through
   return true;
 }
 
-SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
+SurfaceReport check_surface(const TriangleMesh& mesh, SelfIntersections crossings) {
   if (mesh.two_sided()) {
     try {
       return check_complex(Complex::from_two_sided(mesh), crossings);
@@ -202,7 +202,7 @@ SurfaceReport check_surface(const TriangleMesh& mesh, bool crossings) {
   const Edges edges = edges_of(mesh);
   check_edges(mesh, edges, report);
   if (report.closed && report.manifold) check_fans(mesh, edges, report);
-  if (!crossings) return report;
+  if (crossings == SelfIntersections::ignore) return report;
   const auto pairs = crossing_triangles(mesh);
   report.self_intersections = pairs.size();
   if (!pairs.empty())
@@ -338,11 +338,11 @@ SurfaceReport check_near(const Complex& k, std::span<const FaceId> faces) {
   return report;
 }
 
-SurfaceReport check_complex(const Complex& k, bool crossings) {
+SurfaceReport check_complex(const Complex& k, SelfIntersections crossings) {
   SurfaceReport report;
   for (std::uint32_t f = 0; f < k.face_count(); ++f)
     if (k.alive(FaceId(f))) check_face(k, f, report);
-  if (crossings) {
+  if (crossings == SelfIntersections::find) {
     const auto pairs = self_intersections(k);
     report.self_intersections = pairs.size();
     if (!pairs.empty())
@@ -354,7 +354,7 @@ SurfaceReport check_complex(const Complex& k, bool crossings) {
 }
 
 void require_solid(const TriangleMesh& mesh) {
-  const SurfaceReport report = check_surface(mesh, true);
+  const SurfaceReport report = check_surface(mesh, SelfIntersections::find);
   if (!report.good()) throw InputError(report.first_problem);
 }
 

@@ -136,8 +136,12 @@ std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::
   std::vector<Bond> bonds;
   for (const auto& [pair, wall] : walls)
     if (pair.first != pair.second)
-      bonds.push_back(
-          {pair.first, pair.second, wall.area, wall.normal.normalized(), wall.center / wall.area, sections.at(pair)});
+      bonds.push_back({.a = pair.first,
+                       .b = pair.second,
+                       .area = wall.area,
+                       .normal = wall.normal.normalized(),
+                       .centroid = wall.center / wall.area,
+                       .section = sections.at(pair)});
   return bonds;
 }
 

@@ -56,7 +56,7 @@ class Complex::Commit {
   // A face of K or of the edit.
   Face face_after(FaceId f) const {
     if (f.value < old_faces_) return k_.face(f);
-    return {new_face(f).v, new_face(f).crack, true, ~0u};
+    return {.v = new_face(f).v, .crack = new_face(f).crack, .alive = true, .source = ~0u};
   }
 
   void check_removed_faces() {
@@ -162,7 +162,14 @@ class Complex::Commit {
   }
 
   void begin_undo_log() {
-    log_ = {old_vertices_, old_faces_, k_.surface_vertex_count(), k_.crack_count_, removed_, {}, {}, {}};
+    log_ = {.vertices = old_vertices_,
+            .faces = old_faces_,
+            .surface_vertices = k_.surface_vertex_count(),
+            .cracks = k_.crack_count_,
+            .removed = removed_,
+            .radial = {},
+            .corners = {},
+            .fans = {}};
     delta_.removed_faces = removed_;
   }
 
@@ -216,7 +223,8 @@ class Complex::Commit {
       const auto& n = edit_.new_faces[i];
       const FaceId f(old_faces_ + i);
       const bool has_parent = n.parent.valid() && n.parent.value < old_faces_;
-      k_.faces_.push_back({n.v, n.crack, true, has_parent ? k_.face(n.parent).source : ~0u});
+      k_.faces_.push_back(
+          {.v = n.v, .crack = n.crack, .alive = true, .source = has_parent ? k_.face(n.parent).source : ~0u});
       k_.link_corners(f);
       for (int k = 0; k < 3; ++k) {
         touch(n.v[k]);
@@ -247,7 +255,8 @@ class Complex::Commit {
   void log_fans_at(VertexId v, const std::vector<SurfaceVertexId>& gone) {
     const auto log_fan = [&](SurfaceVertexId id) {
       if (log_.fans.empty() || log_.fans.back().v != id)
-        log_.fans.push_back({id, k_.site(id), k_.fan_side_[id.index()], k_.fan_corner_[id.index()]});
+        log_.fans.push_back(
+            {.v = id, .site = k_.site(id), .side = k_.fan_side_[id.index()], .corner = k_.fan_corner_[id.index()]});
     };
     for (const FaceId f : k_.faces_at(v)) {
       if (f.value >= old_faces_) break;

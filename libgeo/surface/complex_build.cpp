@@ -51,7 +51,7 @@ class Complex::Builder {
 
   FaceId add_face(std::array<VertexId, 3> v, std::int32_t crack, std::uint32_t source) {
     const FaceId f(k.faces_.size());
-    k.faces_.push_back({v, crack, true, source});
+    k.faces_.push_back({.v = v, .crack = crack, .alive = true, .source = source});
     k.corner_vertex_.resize(k.corner_vertex_.size() + 6);
     k.crack_count_ = std::max(k.crack_count_, crack);
     ++k.live_faces_;

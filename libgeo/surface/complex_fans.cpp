@@ -11,7 +11,12 @@ namespace geo {
 // Each side at v has a neighbour across either of its edges there, so a fan is a closed cycle of
 // sides.
 void Complex::FanBuilder::walk_fan(Side start, VertexId v, std::vector<SurfaceVertexId>& old_ids) {
-  Fan fan{start, 0, corners_.size(), 0, candidates_.size(), 0};
+  Fan fan{.lowest = start,
+          .corner = 0,
+          .first_corner = corners_.size(),
+          .end_corner = 0,
+          .first_candidate = candidates_.size(),
+          .end_candidate = 0};
   Side s = start;
   for (int edge = corner_at(k_.face(s.face), v), k = edge;;) {
     corners_.push_back({s, k});

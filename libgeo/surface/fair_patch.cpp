@@ -19,7 +19,7 @@ namespace {
 using Corners = std::array<std::uint32_t, 3>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // lower corner first
 // Limits memory and time only; coarser patches do not depend on it.
-constexpr double most_triangles = 1e6;
+constexpr double max_triangles = 1e6;
 
 // The cosine of a triangle's smallest angle; 1 for a degenerate one.
 double sharpness(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -55,7 +55,7 @@ class Patch {
       const double size = (size_[a] + size_[b] + size_[c]) / 3;  // edge length of equilateral triangles
       count += std::max(1.0, 2 / std::numbers::sqrt3 * (at_[b] - at_[a]).cross(at_[c] - at_[a]).norm() / (size * size));
     }
-    return !(count <= most_triangles);
+    return !(count <= max_triangles);
   }
 
   FairPatch result() const {
@@ -157,7 +157,7 @@ bool Patch::divide() {
     link(t);
     link(static_cast<std::uint32_t>(triangles_.size()) - 2);
     link(static_cast<std::uint32_t>(triangles_.size()) - 1);
-    if (double(triangles_.size()) > most_triangles) return false;
+    if (double(triangles_.size()) > max_triangles) return false;
     divided = true;
   }
   return divided;

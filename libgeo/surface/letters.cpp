@@ -12,8 +12,12 @@
 namespace geo {
 namespace {
 
+struct PenPoint {
+  double x, y;
+};
+
 struct Stroke {
-  double x0, y0, x1, y1;
+  PenPoint from, to;
 };
 
 // Pen strokes in a box of width 0.6 and height 0.8; round letters are drawn as polygons.
@@ -24,71 +28,74 @@ std::vector<Stroke> strokes_of(char letter) {
     constexpr int segments = 24;  // larger: rounder letters
     for (int i = 0; i < segments; ++i) {
       const double a0 = from + (to - from) * i / segments, a1 = from + (to - from) * (i + 1) / segments;
-      arc.push_back({c + 0.3 * std::cos(a0), m + 0.4 * std::sin(a0), c + 0.3 * std::cos(a1), m + 0.4 * std::sin(a1)});
+      arc.push_back(
+          {{c + 0.3 * std::cos(a0), m + 0.4 * std::sin(a0)}, {c + 0.3 * std::cos(a1), m + 0.4 * std::sin(a1)}});
     }
     return arc;
   };
   constexpr double pi = std::numbers::pi;
-  const Stroke left{l, b, l, t}, right{r, b, r, t}, top{l, t, r, t}, middle{l, m, r, m}, bottom{l, b, r, b};
+  const Stroke left{{l, b}, {l, t}}, right{{r, b}, {r, t}}, top{{l, t}, {r, t}}, middle{{l, m}, {r, m}},
+      bottom{{l, b}, {r, b}};
   switch (letter) {
     case 'A':
-      return {{l, b, c, t}, {c, t, r, b}, {0.11, 0.27, 0.49, 0.27}};
+      return {{{l, b}, {c, t}}, {{c, t}, {r, b}}, {{0.11, 0.27}, {0.49, 0.27}}};
     case 'B':
       return {left, top, middle, bottom, right};
     case 'C':
       return arc_of(pi / 4, 7 * pi / 4);
     case 'D':
-      return {left, {l, t, c, t}, {c, t, r, 0.55}, {r, 0.55, r, 0.25}, {r, 0.25, c, b}, {c, b, l, b}};
+      return {
+          left, {{l, t}, {c, t}}, {{c, t}, {r, 0.55}}, {{r, 0.55}, {r, 0.25}}, {{r, 0.25}, {c, b}}, {{c, b}, {l, b}}};
     case 'E':
       return {left, top, middle, bottom};
     case 'F':
       return {left, top, middle};
     case 'G': {
       auto g = arc_of(pi / 4, 2 * pi);
-      g.push_back({r, m, c, m});
+      g.push_back({{r, m}, {c, m}});
       return g;
     }
     case 'H':
       return {left, right, middle};
     case 'I':
-      return {{c, b, c, t}};
+      return {{{c, b}, {c, t}}};
     case 'J':
-      return {{r, t, r, 0.2}, {r, 0.2, c, b}, {c, b, l, 0.2}};
+      return {{{r, t}, {r, 0.2}}, {{r, 0.2}, {c, b}}, {{c, b}, {l, 0.2}}};
     case 'K':
-      return {left, {l, m, r, t}, {l, m, r, b}};
+      return {left, {{l, m}, {r, t}}, {{l, m}, {r, b}}};
     case 'L':
       return {left, bottom};
     case 'M':
-      return {left, right, {l, t, c, m}, {c, m, r, t}};
+      return {left, right, {{l, t}, {c, m}}, {{c, m}, {r, t}}};
     case 'N':
-      return {left, right, {l, t, r, b}};
+      return {left, right, {{l, t}, {r, b}}};
     case 'O':
       return arc_of(0, 2 * pi);
     case 'P':
-      return {left, top, middle, {r, m, r, t}};
+      return {left, top, middle, {{r, m}, {r, t}}};
     case 'Q': {
       auto q = arc_of(0, 2 * pi);
-      q.push_back({c, 0.25, r, b});
+      q.push_back({{c, 0.25}, {r, b}});
       return q;
     }
     case 'R':
-      return {left, top, middle, {r, m, r, t}, {c, m, r, b}};
+      return {left, top, middle, {{r, m}, {r, t}}, {{c, m}, {r, b}}};
     case 'S':
-      return {top, {l, t, l, m}, middle, {r, m, r, b}, bottom};
+      return {top, {{l, t}, {l, m}}, middle, {{r, m}, {r, b}}, bottom};
     case 'T':
-      return {{c, b, c, t}, top};
+      return {{{c, b}, {c, t}}, top};
     case 'U':
-      return {{l, t, l, 0.2}, {l, 0.2, c, b}, {c, b, r, 0.2}, {r, 0.2, r, t}};
+      return {{{l, t}, {l, 0.2}}, {{l, 0.2}, {c, b}}, {{c, b}, {r, 0.2}}, {{r, 0.2}, {r, t}}};
     case 'V':
-      return {{l, t, c, b}, {c, b, r, t}};
+      return {{{l, t}, {c, b}}, {{c, b}, {r, t}}};
     case 'W':
-      return {left, right, {l, b, c, m}, {c, m, r, b}};
+      return {left, right, {{l, b}, {c, m}}, {{c, m}, {r, b}}};
     case 'X':
-      return {{l, b, r, t}, {l, t, r, b}};
+      return {{{l, b}, {r, t}}, {{l, t}, {r, b}}};
     case 'Y':
-      return {{l, t, c, m}, {r, t, c, m}, {c, m, c, b}};
+      return {{{l, t}, {c, m}}, {{r, t}, {c, m}}, {{c, m}, {c, b}}};
     case 'Z':
-      return {top, bottom, {l, b, r, t}};
+      return {top, bottom, {{l, b}, {r, t}}};
     default:
       throw InputError(std::string("no block letter for '") + letter + "'; use A to Z");
   }
@@ -97,9 +104,9 @@ std::vector<Stroke> strokes_of(char letter) {
 double distance_to(const std::vector<Stroke>& strokes, double x, double y) {
   double best = 1e300;
   for (const Stroke& s : strokes) {
-    const double dx = s.x1 - s.x0, dy = s.y1 - s.y0, length = dx * dx + dy * dy;
-    const double along = length > 0 ? std::clamp(((x - s.x0) * dx + (y - s.y0) * dy) / length, 0.0, 1.0) : 0.0;
-    best = std::min(best, std::hypot(x - s.x0 - along * dx, y - s.y0 - along * dy));
+    const double dx = s.to.x - s.from.x, dy = s.to.y - s.from.y, length = dx * dx + dy * dy;
+    const double along = length > 0 ? std::clamp(((x - s.from.x) * dx + (y - s.from.y) * dy) / length, 0.0, 1.0) : 0.0;
+    best = std::min(best, std::hypot(x - s.from.x - along * dx, y - s.from.y - along * dy));
   }
   return best;
 }

@@ -14,7 +14,7 @@ namespace {
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // lower vertex first
 
 // Limits memory: an edge length in the wrong unit fails early.
-constexpr std::size_t most_triangles = 20'000'000;
+constexpr std::size_t max_triangles = 20'000'000;
 constexpr std::uint32_t none = ~0u;
 
 Edge edge(const Triangle& t, int k) { return std::minmax(t[k], t[(k + 1) % 3]); }
@@ -42,7 +42,7 @@ class Pass {
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
       divide(mesh_.triangles[i], triangles);
       source.resize(triangles.size(), mesh_.source[i]);
-      if (triangles.size() > most_triangles)
+      if (triangles.size() > max_triangles)
         throw InputError("edges so short would make more than 20 million triangles; let them be longer");
     }
     mesh_.triangles.swap(triangles);

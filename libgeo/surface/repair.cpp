@@ -1,8 +1,8 @@
-// repair() of kerf/check.h.
+// repair() of kerf/repair.h.
 //
 // Phases: weld, drop degenerate and duplicate triangles, orient components by flood fill (majority
 // wins), fill the loops of open edges, arrange shells by nesting and winding number.
-#include "kerf/check.h"
+#include "kerf/repair.h"
 
 #include <algorithm>
 #include <map>
@@ -13,6 +13,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/triangle_index.h"
+#include "kerf/check.h"
 #include "surface/components.h"
 #include "surface/fair_patch.h"
 #include "surface/polygon.h"

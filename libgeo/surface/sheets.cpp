@@ -1,10 +1,10 @@
-// take_sheets() of kerf/check.h. Pairs of triangles that coincide and face each other cancel in a
+// take_sheets() of kerf/repair.h. Pairs of triangles that coincide and face each other cancel in a
 // solid, where they are a wall between two parts. In a card they are all that there is.
 #include <algorithm>
 #include <map>
 
 #include "base/union_find.h"
-#include "kerf/check.h"
+#include "kerf/repair.h"
 #include "surface/components.h"
 #include "surface/polygon.h"
 #include "surface/weld.h"

@@ -35,6 +35,10 @@ std::array<std::uint32_t, 3> ids_of_triangle(const py::object& ids, const char* 
   return out;
 }
 
+geo::SelfIntersections tested(bool crossings) {
+  return crossings ? geo::SelfIntersections::find : geo::SelfIntersections::ignore;
+}
+
 // A mesh whose crossings can be counted.
 const geo::TriangleMesh& countable(const Mesh& mesh) {
   if (collapsed_triangles(mesh.mesh) > 0)
@@ -85,7 +89,7 @@ void add_to_classes(py::module_& module) {
       .def(
           "check",
           [](const Mesh& self, bool crossings) {
-            return without_gil([&] { return geo::check_surface(self.mesh, crossings); });
+            return without_gil([&] { return geo::check_surface(self.mesh, tested(crossings)); });
           },
           py::arg("self_intersections") = true,
           "Checks that the mesh is closed, manifold, oriented and without degenerate or intersecting triangles; "
@@ -102,7 +106,7 @@ void add_to_classes(py::module_& module) {
           "check",
           [](Complex& self, bool crossings) {
             const Reading reading(self.busy);
-            return without_gil([&] { return geo::check_complex(self.complex, crossings); });
+            return without_gil([&] { return geo::check_complex(self.complex, tested(crossings)); });
           },
           py::arg("self_intersections") = true,
           "Checks that radial cycles are in geometric order, wedges are all material or all air, the two-sided "

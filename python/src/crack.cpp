@@ -145,6 +145,12 @@ Shared cracked(const std::shared_ptr<Mesh>& mesh, const py::object& what, double
   return made;
 }
 
+py::object pieces_of_cut(const std::shared_ptr<Mesh>& mesh, const py::object& what, const py::object& progress,
+                         Keywords&& keywords) {
+  const auto made = cracked(mesh, what, 0, progress, std::move(keywords));
+  return py::cast(made).attr("pieces")(py::arg("progress") = progress);
+}
+
 constexpr const char* crack_doc =
     "what: a Score, a Mesh (a sheet) or its arrays (vertices, faces), a Plane, a Front, an array (steps, points, 3), "
     "a\n"
@@ -176,15 +182,21 @@ void bind_crack(py::module_& module) {
           },
           py::arg("what"), py::arg("max_move") = 0.0, py::arg_v("progress", py::none()), of_model.c_str())
       .def(
-          "split",
-          [](const std::shared_ptr<Mesh>& self, const py::object& what, py::object progress, py::kwargs given) {
-            const auto made = cracked(self, what, 0, progress, Keywords(std::move(given), "split"));
-            return py::cast(made).attr("pieces")(py::arg("progress") = progress);
+          "cut",
+          [](const std::shared_ptr<Mesh>& self, const py::object& what, const py::object& progress, py::kwargs given) {
+            return pieces_of_cut(self, what, progress, Keywords(std::move(given), "cut"));
           },
           py::arg("what"), py::arg_v("progress", py::none()),
           "The pieces into which planes, sheets or other cracks divide the model, a list of Piece in descending order "
           "of\n"
-          "volume: crack(what).pieces(). Raises as these.");
+          "volume: crack(what).pieces(). Raises as these.")
+      .def(
+          "split",
+          [](const std::shared_ptr<Mesh>& self, const py::object& what, const py::object& progress, py::kwargs given) {
+            return pieces_of_cut(self, what, progress, Keywords(std::move(given), "split"));
+          },
+          py::arg("what"), py::arg_v("progress", py::none()),
+          "The older name of cut(). The split() of trimesh is another thing: it separates connected parts.");
   py::class_<Complex, Shared>(module.attr("Complex"))
       .def(
           "crack",

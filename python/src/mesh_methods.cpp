@@ -11,6 +11,7 @@
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/pieces.h"
+#include "kerf/repair.h"
 #include "mesh.h"
 #include "progress.h"
 

@@ -14,6 +14,7 @@
 #include "kerf/error.h"
 #include "kerf/files.h"
 #include "kerf/material.h"
+#include "kerf/repair.h"
 #include "kerf/solid.h"
 #include "nodes.h"
 #include "pieces.h"

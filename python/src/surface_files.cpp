@@ -105,7 +105,7 @@ std::shared_ptr<Solid> solid_of(geo::SurfaceFile&& file, const std::string& name
 // A Complex where the surface is cut, a Solid where it is one, else a Mesh.
 py::object any_surface(const Path& path, const std::string& unit) {
   auto file = read(path, unit);
-  const bool valid = without_gil([&] { return geo::check_surface(file.mesh, true).good(); });
+  const bool valid = without_gil([&] { return geo::check_surface(file.mesh, geo::SelfIntersections::find).good(); });
   if (!valid) return py::cast(std::make_shared<Mesh>(std::move(file.mesh)));
   if (file.fronts.empty()) forget_sites(file.mesh);
   if (file.mesh.two_sided()) return py::cast(with_fronts(std::move(file), path.text));

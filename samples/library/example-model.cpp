@@ -5,6 +5,7 @@
 #include <kerf/check.h>
 #include <kerf/files.h>
 #include <kerf/mesh.h>
+#include <kerf/repair.h>
 
 int main() {
   {
@@ -15,7 +16,7 @@ int main() {
     geo::write_ply(out, broken);
   }
   geo::TriangleMesh mesh = geo::read_surface("broken.ply").mesh;
-  std::printf("%s\n", geo::check_surface(mesh, true).first_problem.c_str());
+  std::printf("%s\n", geo::check_surface(mesh, geo::SelfIntersections::find).first_problem.c_str());
 
   const geo::RepairStats stats = geo::repair(mesh);
   std::printf("%zu holes filled, %zu triangles reversed\n", stats.filled_holes, stats.flipped_triangles);

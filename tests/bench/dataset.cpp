@@ -67,7 +67,7 @@ bool is_wrong(const Fracture& fracture) {
     geo::TriangleMesh mesh;
     mesh.vertices = piece.vertices;
     mesh.triangles = piece.faces;
-    if (!geo::check_surface(mesh, true).good()) return true;
+    if (!geo::check_surface(mesh, geo::SelfIntersections::find).good()) return true;
   }
   return false;
 }

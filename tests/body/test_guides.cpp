@@ -24,8 +24,8 @@ Body make_body(const TriangleMesh& mesh, double spacing, double guides) {
 
 std::size_t guides_in_use(const Body& body) {
   std::size_t count = 0;
-  for (std::uint32_t g = 0; g < body.graph.storage().guides().size(); ++g)
-    count += !body.graph.storage().entries(VisibilityGraph::first_guide + g).to.empty();
+  for (std::uint32_t g = 0; g < GraphStorage::of(body.graph).guides().size(); ++g)
+    count += !GraphStorage::of(body.graph).entries(VisibilityGraph::first_guide + g).to.empty();
   return count;
 }
 
@@ -40,7 +40,7 @@ std::size_t neighbors(const Body& body) {
 TEST_CASE("A letter's inner corners get guides, a block none", "[body]") {
   const TriangleMesh letter = make_letter('E', 0.3, 12);
   const Body bare = make_body(letter, 0.05, 0), guided = make_body(letter, 0.05, 0.5);
-  CHECK(bare.graph.storage().guides().size() == 0);
+  CHECK(GraphStorage::of(bare.graph).guides().size() == 0);
   CHECK(guides_in_use(guided) >= 20);
   CHECK(check_body(guided).first_problem == "");
   CHECK(guided.graph.edge_count() == bare.graph.edge_count());
@@ -57,7 +57,7 @@ TEST_CASE("A letter's inner corners get guides, a block none", "[body]") {
     }
   }
   CHECK(nearer > 0);
-  CHECK(make_body(make_block({1, 1, 1}, 0.5), 0.2, 0.5).graph.storage().guides().size() == 0);
+  CHECK(GraphStorage::of(make_body(make_block({1, 1, 1}, 0.5), 0.2, 0.5).graph).guides().size() == 0);
   CHECK_THROWS_AS(make_body(letter, 0.05, 0.01), InputError);
   CHECK_THROWS_AS(make_body(letter, 0.05, 0.0 / 0.0), InputError);
 }
@@ -73,17 +73,17 @@ TEST_CASE("Guides follow the front of a crack", "[body]") {
     split(bare, other, {{0.473, -0.5, z}, {0.481, 1.5, z}});
     INFO("step " << s);
     CHECK(check_body(body).first_problem == "");
-    CHECK(body.graph.storage().guides().size() > placed);
-    placed = body.graph.storage().guides().size();
+    CHECK(GraphStorage::of(body.graph).guides().size() > placed);
+    placed = GraphStorage::of(body.graph).guides().size();
     // They stand along the front, which they see past on both sides, and nowhere else.
     std::size_t used = 0;
     for (std::uint32_t g = 0; g < placed; ++g) {
-      const auto row = body.graph.storage().entries(VisibilityGraph::first_guide + g);
-      CHECK(body.graph.storage().guides().retired(g) == row.to.empty());
+      const auto row = GraphStorage::of(body.graph).entries(VisibilityGraph::first_guide + g);
+      CHECK(GraphStorage::of(body.graph).guides().retired(g) == row.to.empty());
       if (row.to.empty()) continue;
       ++used;
-      CHECK(body.graph.storage().guides().position(g).z() > z);
-      CHECK(body.graph.storage().guides().position(g).z() < z + 0.01);
+      CHECK(GraphStorage::of(body.graph).guides().position(g).z() > z);
+      CHECK(GraphStorage::of(body.graph).guides().position(g).z() < z + 0.01);
       bool left = false, right = false;
       for (const auto j : row.to)
         if (!VisibilityGraph::is_guide(j) && body.nodes.position[j].z() < z - 0.03)
@@ -103,9 +103,9 @@ TEST_CASE("Random cuts keep a pumpkin's body and its guides in step", "[body]") 
   random_cuts::cut_bodies(
       model, 6, 32452843, [](const Body& body) { CHECK(check_body(body).first_problem == ""); },
       [&](const Body& body) {
-        placed += body.graph.storage().guides().size() - model.graph.storage().guides().size();
-        for (std::uint32_t g = 0; g < body.graph.storage().guides().size(); ++g)
-          retired += body.graph.storage().guides().retired(g);
+        placed += GraphStorage::of(body.graph).guides().size() - GraphStorage::of(model.graph).guides().size();
+        for (std::uint32_t g = 0; g < GraphStorage::of(body.graph).guides().size(); ++g)
+          retired += GraphStorage::of(body.graph).guides().retired(g);
       });
   CHECK(placed > 100);
   CHECK(retired > 50);

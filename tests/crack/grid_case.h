@@ -57,7 +57,8 @@ inline GridCase random_case(std::uint64_t seed) {
 /// The first invariant that a step violates: structure and volumes of the whole, crossings of the
 /// faces `made` by the step, which alone can cross anything; without `made`, of all faces.
 inline std::string fault_of(const geo::Complex& k, double volume, const std::vector<geo::FaceId>* made = nullptr) {
-  const auto report = geo::check_complex(k, made == nullptr);
+  const auto report =
+      geo::check_complex(k, made == nullptr ? geo::SelfIntersections::find : geo::SelfIntersections::ignore);
   if (!report.good()) return report.first_problem;
   if (made)
     if (const auto pairs = geo::self_intersections(k, made); !pairs.empty())

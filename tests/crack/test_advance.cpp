@@ -22,7 +22,7 @@ std::vector<Vec3> line(const Vec3& from, const Vec3& to, int segments) {
 }
 
 void require_sound(const Complex& k, double volume) {
-  const auto report = check_complex(k, true);
+  const auto report = check_complex(k, SelfIntersections::find);
   INFO(report.first_problem);
   REQUIRE(report.good());
   const Pieces pieces = find_pieces(k);

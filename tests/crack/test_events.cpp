@@ -31,7 +31,7 @@ std::size_t sweep(Complex& k, const std::vector<Row>& rows, std::int32_t crack, 
   for (std::size_t s = 1; s < rows.size(); ++s) {
     CAPTURE(s, crack);
     advance(k, front, rows[s]);
-    const auto report = check_complex(k, true);
+    const auto report = check_complex(k, SelfIntersections::find);
     INFO(report.first_problem);
     REQUIRE(report.good());
     const Pieces pieces = find_pieces(k);
@@ -123,7 +123,7 @@ TEST_CASE("event: three sheets that meet in a line") {
                     {5, -1, 3.1}, {5, 5, 3.1}, {3, -1, -1},   {3, 5, -1}};
   sheet.triangles = {{0, 1, 2}, {1, 3, 2}, {0, 1, 4}, {1, 5, 4}, {0, 1, 6}, {1, 7, 6}};
   insert_sheet(k, sheet, 1);
-  CHECK(check_complex(k, true).first_problem == "");
+  CHECK(check_complex(k, SelfIntersections::find).first_problem == "");
   CHECK(pieces(k) == 3);
 }
 
@@ -172,7 +172,7 @@ TEST_CASE("event: pieces that touch at a vertex only") {
   std::sort(volumes.begin(), volumes.end());
   CHECK(volumes[0] == Approx(8.0 / 6).epsilon(1e-13));
   CHECK(volumes[1] == Approx(8.0 / 6).epsilon(1e-13));
-  CHECK(check_complex(k, true).first_problem == "");
+  CHECK(check_complex(k, SelfIntersections::find).first_problem == "");
 }
 
 TEST_CASE("event: coordinates scaled by a millionth and a million, and moved far away") {

@@ -111,7 +111,7 @@ TEST_CASE("a complete cut that grazes a valley separates", "[exits]") {
       ++refused;
       continue;
     }
-    const auto report = check_complex(k, true);
+    const auto report = check_complex(k, SelfIntersections::find);
     CHECK(report.first_problem == "");
     CHECK(find_pieces(k).count >= 2);
   }

@@ -44,7 +44,7 @@ TEST_CASE("an edit keeps the complex valid, and undo() restores it") {
   REQUIRE(crack::try_commit(k, local, sum));
   CHECK(sum.sum().new_faces.size() == 4);
   CHECK(sum.sum().removed_faces.size() == 2);
-  CHECK(check_complex(k, true).first_problem == "");
+  CHECK(check_complex(k, SelfIntersections::find).first_problem == "");
   CHECK(signed_volume(k.two_sided()) == Approx(8));
   k.undo();
   CHECK(k.two_sided().triangles == before.triangles);

@@ -84,7 +84,7 @@ TEST_CASE("a sheet beside lines of the mesh snaps to them, and leaves no slivers
       }
       c.complex = std::move(tried);
     }
-    const auto report = check_complex(c.complex, true);
+    const auto report = check_complex(c.complex, SelfIntersections::find);
     INFO(report.first_problem);
     REQUIRE(report.good());
     CHECK(find_pieces(c.complex).count == 2);

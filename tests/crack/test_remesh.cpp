@@ -76,7 +76,7 @@ TEST_CASE("many partial cuts through one block, remeshed, keep their angles and 
     refused += !cut_block(k, random, c, true);
     if (c % 25 != 0) continue;
     CAPTURE(c, refused);
-    const auto report = check_complex(k, true);
+    const auto report = check_complex(k, SelfIntersections::find);
     CHECK(report.first_problem == "");
     CHECK(std::abs(volume_of(k) - 1) <= 1e-12);
     CHECK(std::abs(skin_area(k) - 6) <= 6e-12);
@@ -115,7 +115,7 @@ TEST_CASE("a front goes on after remeshing and separates what it would have sepa
           for (const auto& p : segment)
             if (p.id.valid()) REQUIRE(better.point(p.id) == p.position);
       }
-      CHECK(check_complex(better, true).first_problem == "");
+      CHECK(check_complex(better, SelfIntersections::find).first_problem == "");
       CHECK(find_pieces(better).count == find_pieces(plain).count);
       CHECK(find_pieces(plain).count >= 2);
       CHECK(volume_of(better) == Approx(signed_volume(model)).epsilon(1e-12));
@@ -162,7 +162,7 @@ TEST_CASE("jagged cracks leave the skin to the bit, and the same seed gives the 
     roughen(k, fronts, options, &work);
     roughen(again, fronts, options);
     CHECK(skin(k) == before);
-    CHECK(check_complex(k, true).first_problem == "");
+    CHECK(check_complex(k, SelfIntersections::find).first_problem == "");
     CHECK(find_pieces(k).count == find_pieces(again).count);
     CHECK(volume_of(k) == Approx(signed_volume(model)).epsilon(1e-12));
     CHECK(k.two_sided().vertices == again.two_sided().vertices);
@@ -177,7 +177,7 @@ TEST_CASE("jagged cracks leave the skin to the bit, and the same seed gives the 
     if (last == 10) continue;
     for (int s = last + 1; s <= 10; ++s) advance(k, front, wavy(s / 10.0));  // the tip is where it was
     CHECK(find_pieces(k).count >= 2);
-    CHECK(check_complex(k, true).first_problem == "");
+    CHECK(check_complex(k, SelfIntersections::find).first_problem == "");
   }
   RoughenOptions wrong;
   wrong.frequency = 0;
@@ -198,7 +198,7 @@ TEST_CASE("decimation stays as close as it is told, closed and free of crossings
     DecimateOptions options;
     options.deviation = deviation;
     decimate(k, {}, options);
-    CHECK(check_complex(k, true).first_problem == "");
+    CHECK(check_complex(k, SelfIntersections::find).first_problem == "");
     CHECK(k.live_face_count() < (deviation > 1e-3 ? 0.8 : 0.98) * faces);
     CHECK(find_pieces(k).count == pieces);
     CHECK(std::abs(volume_of(k) - signed_volume(model)) <= deviation * diagonal * area(model));
@@ -220,6 +220,6 @@ TEST_CASE("decimation stays as close as it is told, closed and free of crossings
     options.deviation = 0.05;
     decimate(k, {}, options);
     CHECK(k.live_face_count() <= few + 1);
-    CHECK(check_complex(k, true).first_problem == "");
+    CHECK(check_complex(k, SelfIntersections::find).first_problem == "");
   }
 }

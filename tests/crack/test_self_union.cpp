@@ -7,6 +7,7 @@
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 
@@ -118,13 +119,13 @@ TEST_CASE("solids that share one vertex are no solid, and repair parts them ther
     if (mesh.vertices[v] == Vec3(1, 1, 1)) corner.push_back(v);
   REQUIRE(corner.size() == 2);
   for (Triangle& t : mesh.triangles) std::replace(t.begin(), t.end(), corner[1], corner[0]);
-  const SurfaceReport report = check_surface(mesh, true);
+  const SurfaceReport report = check_surface(mesh, SelfIntersections::find);
   CHECK(!report.manifold);
   CHECK(report.self_intersections == 0);
   CHECK(report.first_problem == "the surface is not manifold: vertex " + std::to_string(corner[0]) +
                                     " joins 2 fans of triangles; separate the parts that touch there");
   const TriangleMesh solid = repaired_solid(mesh);
-  CHECK(check_surface(solid, true).first_problem == "");
+  CHECK(check_surface(solid, SelfIntersections::find).first_problem == "");
   CHECK(signed_volume(solid) == Approx(2).epsilon(1e-3));
   CHECK(shared_positions(solid, mesh) >= mesh.vertices.size() - 1);
 }

@@ -169,7 +169,7 @@ TEST_CASE("stitching gives the radial order of every edge of a crack face or of 
       if (at.size() >= 3 && (joined || is_new)) CHECK(given[edge] == 1);
     }
     s.k.apply(s.edit);
-    CHECK(check_complex(s.k, true).first_problem == "");
+    CHECK(check_complex(s.k, SelfIntersections::find).first_problem == "");
     CHECK(signed_volume(s.k.two_sided()) == Approx(1).epsilon(1e-12));
   }
   CHECK(three > 10 * static_cast<std::size_t>(count));
@@ -182,7 +182,7 @@ TEST_CASE("a crack that joins an edge is inserted between the faces that it lies
     Complex k = with_faces_around(apexes);
     CAPTURE(angle);
     insert_sheet(k, sheet_to({0.5 + 0.2 * std::cos(angle), 0.5 + 0.2 * std::sin(angle), 0.5}), 2);
-    CHECK(check_complex(k, true).good());
+    CHECK(check_complex(k, SelfIntersections::find).good());
   }
 }
 

@@ -94,7 +94,8 @@ TEST_CASE("edges added and removed are those of a map") {
       const bool there = model[{i, j}];
       REQUIRE(graph.has_edge(NodeId(i), NodeId(j)) == there);
       const bool wanted = random.below(2);
-      REQUIRE((wanted ? graph.storage().add(nodes, i, j) : graph.storage().remove(i, j)) == (wanted != there));
+      REQUIRE((wanted ? GraphStorage::of(graph).add(nodes, i, j) : GraphStorage::of(graph).remove(i, j)) ==
+              (wanted != there));
       edges = edges + (wanted && !there) - (!wanted && there);
       model[{i, j}] = model[{j, i}] = wanted;
       REQUIRE(graph.edge_count() == edges);
@@ -125,12 +126,13 @@ TEST_CASE("rows survive a trip through flat arrays, and damaged arrays are refus
     counts.push_back(static_cast<std::uint32_t>(row.to.size()));
   }
   const auto read = [&] {
-    return GraphStorage::from_arrays(nodes, graph.storage().plain_unit(), {counts, flat.to, flat.bits, flat.paths});
+    return GraphStorage::from_arrays(nodes, GraphStorage::of(graph).plain_unit(),
+                                     {counts, flat.to, flat.bits, flat.paths});
   };
   const auto again = read();
-  CHECK(again.equals(graph.storage()));
+  CHECK(again.equals(GraphStorage::of(graph)));
   CHECK(again.edge_count() == graph.edge_count());
-  CHECK(again.longest_edge() == graph.storage().longest_edge());
+  CHECK(again.longest_edge() == GraphStorage::of(graph).longest_edge());
   for (int damage = 0; damage < 500; ++damage) {
     CAPTURE(damage);
     const Row kept = flat;

@@ -163,7 +163,7 @@ TEST_CASE("blocks of rows are released once all runs that may read them are done
     nodes.volume.push_back(1);
   }
   VisibilityGraph graph = build_visibility_graph(nodes, TriangleBvh(), 2);
-  GraphStorage& storage = graph.storage();
+  GraphStorage& storage = GraphStorage::of(graph);
   AdjacencyStore to;
   to.resize(n);
   BlockRelease release(nodes, storage, run, to);

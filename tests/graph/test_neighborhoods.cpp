@@ -7,6 +7,7 @@
 #include "geometry/predicates.h"
 #include "graph/batched_search.h"
 #include "graph/build_graph.h"
+#include "graph/graph_storage.h"
 #include "graph/neighborhood_search.h"
 #include "kerf/graph.h"
 #include "kerf/parallel.h"
@@ -106,7 +107,7 @@ TEST_CASE("a search from scattered nodes finds their rows of a build") {
       if (random.uniform() < std::exp(random.uniform(-6, 0))) sources.push_back(i);
     NeighborhoodSearch search;
     std::size_t next = 0;
-    search.run(nodes, rows.storage(), sources, {}, [&](std::uint32_t i, const AdjacencyRow& row) {
+    search.run(nodes, GraphStorage::of(rows), sources, {}, [&](std::uint32_t i, const AdjacencyRow& row) {
       REQUIRE(i == sources[next++]);
       REQUIRE(row == rows.row(NodeId(i)));
     });

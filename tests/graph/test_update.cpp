@@ -5,6 +5,7 @@
 
 #include "cases.h"
 #include "graph/build_graph.h"
+#include "graph/graph_storage.h"
 #include "graph/guide_edges.h"
 #include "graph/update.h"
 #include "kerf/graph.h"
@@ -62,23 +63,23 @@ struct Cut {
 // The same edges, of which nothing else is known yet.
 VisibilityGraph edges_alone(const NodeSet& nodes, const VisibilityGraph& graph) {
   VisibilityGraph bare;
-  bare.storage().resize(nodes.size());
-  bare.storage().set_plain_unit(graph.storage().plain_unit());
+  GraphStorage::of(bare).resize(nodes.size());
+  GraphStorage::of(bare).set_plain_unit(GraphStorage::of(graph).plain_unit());
   for (std::uint32_t i = 0; i < nodes.size(); ++i)
     for (const NodeId j : graph.edges(NodeId(i)))
-      if (i < j.value) bare.storage().add(nodes, i, j.value);
+      if (i < j.value) GraphStorage::of(bare).add(nodes, i, j.value);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of_guides;
-  for (std::uint32_t g = 0; g < graph.storage().guides().size(); ++g) {
-    const auto id =
-        bare.storage().add_guide({graph.storage().guides().position(g), graph.storage().guides().radius(g)});
-    if (graph.storage().guides().retired(g)) bare.storage().retire_guide(id);
-    for (const auto other : graph.storage().entries(id).to) {
+  for (std::uint32_t g = 0; g < GraphStorage::of(graph).guides().size(); ++g) {
+    const auto id = GraphStorage::of(bare).add_guide(
+        {GraphStorage::of(graph).guides().position(g), GraphStorage::of(graph).guides().radius(g)});
+    if (GraphStorage::of(graph).guides().retired(g)) GraphStorage::of(bare).retire_guide(id);
+    for (const auto other : GraphStorage::of(graph).entries(id).to) {
       of_guides.push_back({id, other});
       if (!VisibilityGraph::is_guide(other)) of_guides.push_back({other, id});
     }
   }
   std::sort(of_guides.begin(), of_guides.end());
-  bare.storage().append_guide_edges(nodes, of_guides);
+  GraphStorage::of(bare).append_guide_edges(nodes, of_guides);
   return bare;
 }
 
@@ -95,8 +96,8 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
     }
   REQUIRE(cut.graph.edge_count() == edges / 2);
   // Guides see what they see within their reach, no more and no less.
-  for (std::uint32_t g = 0; g < cut.graph.storage().guides().size(); ++g) {
-    const auto& guides = cut.graph.storage().guides();
+  for (std::uint32_t g = 0; g < GraphStorage::of(cut.graph).guides().size(); ++g) {
+    const auto& guides = GraphStorage::of(cut.graph).guides();
     const Vec3& p = guides.position(g);
     std::vector<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < cut.nodes.size(); ++i)
@@ -108,7 +109,7 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
           h != g && !guides.retired(g) && !guides.retired(h) && squared_distance(p, guides.position(h)) <= r * r &&
           !tree.blocks(guides.position(h), p))
         expected.push_back(VisibilityGraph::first_guide + h);
-    const auto row = cut.graph.storage().entries(VisibilityGraph::first_guide + g);
+    const auto row = GraphStorage::of(cut.graph).entries(VisibilityGraph::first_guide + g);
     CAPTURE(g);
     REQUIRE(std::vector<std::uint32_t>(row.to.begin(), row.to.end()) == expected);
     for (std::size_t e = 0; e < row.to.size(); ++e) {
@@ -119,10 +120,10 @@ void require_as_from_scratch(const Cut& cut, const GraphUpdate& update, const Vi
   REQUIRE(cut.graph.edge_count() == before.edge_count() - update.cut_edges.size() + update.added_edges.size());
   VisibilityGraph scratch = edges_alone(cut.nodes, cut.graph);
   build_neighborhoods(cut.nodes, scratch, tree);
-  for (std::uint32_t g = 0; g < cut.graph.storage().guides().size(); ++g) {
+  for (std::uint32_t g = 0; g < GraphStorage::of(cut.graph).guides().size(); ++g) {
     CAPTURE(g);
-    REQUIRE(cut.graph.storage().entries(VisibilityGraph::first_guide + g) ==
-            scratch.storage().entries(VisibilityGraph::first_guide + g));
+    REQUIRE(GraphStorage::of(cut.graph).entries(VisibilityGraph::first_guide + g) ==
+            GraphStorage::of(scratch).entries(VisibilityGraph::first_guide + g));
   }
   for (std::size_t i = 0; i < cut.nodes.size(); ++i, ++rows_compared) {
     CAPTURE(i);
@@ -230,7 +231,7 @@ TEST_CASE("updates with any faces, and nodes inserted, moved, resized and joined
       }
       GuideChange guides{random_guides(random, guided ? static_cast<int>(random.below(6)) : 0, fresh), {}};
       for (std::uint32_t m = guided ? random.below(3) : 0; m > 0; --m) {
-        const auto g = VisibilityGraph::first_guide + random.below(cut.graph.storage().guides().size());
+        const auto g = VisibilityGraph::first_guide + random.below(GraphStorage::of(cut.graph).guides().size());
         if (std::find(guides.retired.begin(), guides.retired.end(), g) == guides.retired.end())
           guides.retired.push_back(g);
       }
@@ -270,18 +271,18 @@ TEST_CASE("updates where a face cuts hardly more than one edge of a guide") {
              random_guides(random, 60, walls));
     for (int step = 0; step < 12; ++step) {
       CAPTURE(step);
-      const auto g = VisibilityGraph::first_guide + random.below(body.graph.storage().guides().size());
-      const auto row = body.graph.storage().entries(g);
+      const auto g = VisibilityGraph::first_guide + random.below(GraphStorage::of(body.graph).guides().size());
+      const auto row = GraphStorage::of(body.graph).entries(g);
       if (row.to.empty()) continue;
-      const Vec3 p = body.graph.storage().position(body.nodes, g),
-                 q = body.graph.storage().position(body.nodes,
-                                                   row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
+      const Vec3 p = GraphStorage::of(body.graph).position(body.nodes, g),
+                 q = GraphStorage::of(body.graph)
+                         .position(body.nodes, row.to[random.below(static_cast<std::uint32_t>(row.to.size()))]);
       const Vec3 at = p + random.uniform(0.2, 0.8) * (q - p), u = (q - p).unitOrthogonal(),
                  v = u.cross((q - p).normalized());
       const VisibilityGraph before = body.graph;
       const auto update =
           body.step(NodeId(body.nodes.size()), {}, {{at + 0.002 * u, at + 0.002 * (v - u), at - 0.002 * (v + u)}});
-      cut += !(before.storage().entries(g).to.size() == body.graph.storage().entries(g).to.size());
+      cut += !(GraphStorage::of(before).entries(g).to.size() == GraphStorage::of(body.graph).entries(g).to.size());
       require_as_from_scratch(body, update, before, rows_compared);
     }
   }

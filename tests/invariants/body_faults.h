@@ -106,15 +106,15 @@ inline std::string fault_of(const Body& body, double volume) {
   if (std::abs(total(body.nodes.volume) - volume) > 1e-12 * volume)
     return "the volumes of the nodes do not sum to what they did";
 
-  for (std::uint32_t g = 0; g < body.graph.storage().guides().size(); ++g) {
+  for (std::uint32_t g = 0; g < GraphStorage::of(body.graph).guides().size(); ++g) {
     const auto id = VisibilityGraph::first_guide + g;
-    for (const auto to : body.graph.storage().entries(id).to)
-      if (to < id &&
-          faces.blocks(body.graph.storage().position(body.nodes, to), body.graph.storage().guides().position(g)))
+    for (const auto to : GraphStorage::of(body.graph).entries(id).to)
+      if (to < id && faces.blocks(GraphStorage::of(body.graph).position(body.nodes, to),
+                                  GraphStorage::of(body.graph).guides().position(g)))
         return "an edge of guide " + name(g) + " crosses a face";
   }
 
-  if (const auto report = check_complex(k, false); !report.good()) return report.first_problem;
+  if (const auto report = check_complex(k, SelfIntersections::ignore); !report.good()) return report.first_problem;
   const Pieces pieces = find_pieces(k);
   std::vector<std::uint32_t> component;
   const auto components = body.graph.components(component);
@@ -181,8 +181,8 @@ inline std::string fault_of_new_edges(const Body& before, const Body& body, cons
   std::vector<std::pair<double, std::uint32_t>> near;
   const auto sees = [&](std::uint32_t i, std::uint32_t j) {
     const auto [low, high] = std::minmax(i, j);
-    return !faces.blocks(body.graph.storage().position(body.nodes, low),
-                         body.graph.storage().position(body.nodes, high));
+    return !faces.blocks(GraphStorage::of(body.graph).position(body.nodes, low),
+                         GraphStorage::of(body.graph).position(body.nodes, high));
   };
   const auto is_moved = [&](std::uint32_t i) {
     return std::binary_search(delta.moved_nodes.begin(), delta.moved_nodes.end(), NodeId(i));
@@ -204,17 +204,17 @@ inline std::string fault_of_new_edges(const Body& before, const Body& body, cons
                ", one of the nearest that it sees";
     }
   }
-  const GuideSet &guides = body.graph.storage().guides(), &old = before.graph.storage().guides();
+  const GuideSet &guides = GraphStorage::of(body.graph).guides(), &old = GraphStorage::of(before.graph).guides();
   for (std::uint32_t g = 0; g < guides.size(); ++g) {
     const auto id = VisibilityGraph::first_guide + g;
     const auto wrong = [&](std::uint32_t other, double reach, bool fresh) {
       const bool edge = body.graph.has_edge(NodeId(id), NodeId(other)),
                  had = g < old.size() && before.graph.has_edge(NodeId(id), NodeId(other));
       if (g < old.size() && !fresh && !had) return edge;
-      return edge !=
-             (reach > 0 &&
-              squared_distance(body.graph.storage().position(body.nodes, other), guides.position(g)) <= reach * reach &&
-              sees(id, other));
+      return edge != (reach > 0 &&
+                      squared_distance(GraphStorage::of(body.graph).position(body.nodes, other), guides.position(g)) <=
+                          reach * reach &&
+                      sees(id, other));
     };
     for (std::uint32_t i = 0; i < n; ++i)
       if (wrong(i, guides.radius(g), i >= first || is_moved(i)))

@@ -103,12 +103,12 @@ TEST_CASE("Every kind of front through every model keeps every invariant after e
             repairs += work.repairs;
             retries += work.attempts - 1;
           }
-          const auto report = check_complex(k, false);
+          const auto report = check_complex(k, SelfIntersections::ignore);
           if (!report.good()) FAIL(report.first_problem);
           if (std::abs(volume_of(k) - model.volume) > 1e-11 * model.volume)
             FAIL("volume " << volume_of(k) << " of " << model.volume);
         }
-        const auto report = check_complex(k, true);
+        const auto report = check_complex(k, SelfIntersections::find);
         if (!report.good()) FAIL(model.name << ", seed " << seed << ": " << report.first_problem);
       }
   std::size_t sum = 0;

@@ -10,7 +10,7 @@ namespace {
 
 // Invariant 1, and 2 with `crossings`, on the complex as it is.
 Pieces require_whole(const Complex& k, bool crossings, double volume, double area) {
-  const auto report = check_complex(k, crossings);
+  const auto report = check_complex(k, crossings ? SelfIntersections::find : SelfIntersections::ignore);
   CHECK(report.first_problem == "");
   if (crossings) CHECK(report.self_intersections.value_or(1) == 0);
   const Pieces pieces = find_pieces(k);

@@ -120,7 +120,7 @@ inline KerfState state_of(const geo::KerfFile& file) {
     geo::KerfSink sink([&](std::span<const std::byte> block) {
       bytes.write(reinterpret_cast<const char*>(block.data()), static_cast<std::streamsize>(block.size()));
     });
-    file.stream(name, sink);
+    file.stream(name, geo::into(sink));
     sink.finish();
     std::string again(s.bytes, '\0');
     file.read(name, std::as_writable_bytes(std::span(again)));

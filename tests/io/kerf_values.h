@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "io/kerf_update.h"
 #include "io/kerf_writer.h"
 #include "kerf/body_file.h"
 #include "kerf/files.h"
@@ -88,7 +89,7 @@ class Folder {
 };
 
 inline std::uint64_t update(const std::string& path, const Values& v) {
-  return geo::KerfUpdate(path).commit(v.arrays());
+  return geo::UpdatedFile(path).commit(v.arrays());
 }
 
 inline std::string refusal(const std::function<void()>& call) {

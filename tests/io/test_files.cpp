@@ -121,7 +121,7 @@ TEST_CASE("fronts, with their contacts, travel in the surface file") {
 TEST_CASE("nodes and bodies are read back to the bit") {
   const double guides = GENERATE(0.0, 1.0);
   const Body body = small_body(guides);
-  CHECK((body.graph.storage().guides().size() > 0) == (guides > 0));
+  CHECK((GraphStorage::of(body.graph).guides().size() > 0) == (guides > 0));
   const std::string pcd = bytes_of([&](auto& out) { write_pcd(out, body.nodes); });
   CHECK(parse_nodes(pcd, "n.pcd").position == body.nodes.position);
   CHECK(parse_nodes(pcd, "n.pcd").volume == body.nodes.volume);

@@ -77,7 +77,7 @@ void continue_fronts(Complex& k, std::vector<FrontState> fronts) {
 
 Use use_surface(SurfaceFile file) {
   return [file = std::move(file)] {
-    const auto report = check_surface(file.mesh, true);
+    const auto report = check_surface(file.mesh, SelfIntersections::find);
     Complex k = Complex::from_two_sided(file.mesh);
     if (!report.good()) return;
     find_pieces(k);
@@ -100,7 +100,8 @@ Use use_fronts(std::vector<Front> fronts) {
       auto at = f.steps[0];
       for (std::size_t s = 1; s < f.steps.size(); ++s) advance(k, state, at = resample_front(at, f.steps[s], f.closed));
     }
-    if (const auto report = check_complex(k, true); !report.good()) throw std::logic_error(report.first_problem);
+    if (const auto report = check_complex(k, SelfIntersections::find); !report.good())
+      throw std::logic_error(report.first_problem);
   };
 }
 

@@ -117,13 +117,13 @@ TEST_CASE("quantised positions have the size that their nodes give them", "[gltf
   CHECK(bounding_box(box).lo.isApprox(Vec3(0, 0, 0)));
   CHECK(bounding_box(box).hi.isApprox(Vec3(2, 1, 1)));
   CHECK(signed_volume(box) == Approx(2));
-  CHECK(check_surface(box, true).good());
+  CHECK(check_surface(box, SelfIntersections::find).good());
   // Integers that are not normalised, with a scale of 1/8192 in their node, as a packer writes
   // them.
   const TriangleMesh packed = case_of("packq.glb").mesh;
   CHECK(bounding_box(packed).lo.isApprox(Vec3(4, -1, -1)));
   CHECK((bounding_box(packed).hi - Vec3(6, 1, 1)).norm() < 1e-3);
-  CHECK(check_surface(packed, true).good());
+  CHECK(check_surface(packed, SelfIntersections::find).good());
 }
 
 TEST_CASE("normalised integers of all types are fractions", "[gltf]") {
@@ -192,7 +192,7 @@ TEST_CASE("strips, fans, sparse accessors and morph weights", "[gltf]") {
   strip.primitive()["indices"] = corners;
   strip.primitive()["mode"] = 5;
   CHECK(signed_volume(strip.read().mesh) == Approx(1.0 / 6));
-  CHECK(check_surface(strip.read().mesh, true).good());
+  CHECK(check_surface(strip.read().mesh, SelfIntersections::find).good());
   Builder fan;
   const std::size_t around = fan.add<std::uint32_t>({0, 2, 1, 3, 2}, 5125, "SCALAR", 5);
   const std::size_t last = fan.add<std::uint32_t>({1, 2, 3}, 5125, "SCALAR", 3);
@@ -200,7 +200,7 @@ TEST_CASE("strips, fans, sparse accessors and morph weights", "[gltf]") {
   fan.primitive()["mode"] = 6;
   fan.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"indices", last}});
   CHECK(signed_volume(fan.read().mesh) == Approx(1.0 / 6));
-  CHECK(check_surface(fan.read().mesh, true).good());
+  CHECK(check_surface(fan.read().mesh, SelfIntersections::find).good());
   Builder sparse;
   const std::size_t which = sparse.add<std::uint8_t>({3}, 5121, "SCALAR", 1);
   const std::size_t values = sparse.add<float>({0, 0, 9}, 5126, "VEC3", 1);

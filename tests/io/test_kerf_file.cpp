@@ -9,6 +9,7 @@
 #include "cases.h"
 #include "io/kerf_bytes.h"
 #include "io/kerf_delta.h"
+#include "io/kerf_update.h"
 #include "io/kerf_values.h"
 #include "kerf/error.h"
 #include "kerf/parallel.h"
@@ -154,10 +155,10 @@ TEST_CASE("a file that loses a section, or grows too long, is written whole") {
   const std::string path = folder.file("a.kerf", v.bytes());
   auto arrays = v.arrays();
   arrays.pop_back();
-  KerfUpdate(path).commit(arrays);
+  UpdatedFile(path).commit(arrays);
   CHECK(KerfFile(Input(path)).updates() == 0);
   CHECK(KerfFile(Input(path)).sections().size() == 4);
-  KerfUpdate(path).commit(v.arrays());  // a section more
+  UpdatedFile(path).commit(v.arrays());  // a section more
   CHECK(KerfFile(Input(path)).updates() == 1);
   CHECK(state_of(read_all(path)) == state_of(v.bytes()));
   for (int i = 0; i < 3; ++i) update(path, v = random_values(random, 100));
@@ -176,7 +177,7 @@ TEST_CASE("two updates of a file at a time, and files put in its place, are refu
     CHECK(state_of(KerfFile(Input(path))) == state_of(v.bytes()));  // readers are not locked out
     change(v, random, 3);
     folder.file("a.kerf", v.bytes());
-    CHECK_THROWS_WITH(first.commit(v.arrays()), Catch::Contains("was replaced by another program"));
+    CHECK_THROWS_WITH(UpdatedFile::of(first).commit(v.arrays()), Catch::Contains("was replaced by another program"));
   }
   change(v, random, 3);
   update(path, v);

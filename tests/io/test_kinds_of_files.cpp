@@ -31,7 +31,7 @@ void check_tetrahedron(const TriangleMesh& mesh) {
   CHECK(mesh.vertices.size() == 4);
   CHECK(mesh.triangles.size() == 4);
   CHECK(signed_volume(mesh) == Approx(1.0 / 6));
-  CHECK(check_surface(mesh, true).good());
+  CHECK(check_surface(mesh, SelfIntersections::find).good());
 }
 
 // The words of an ASCII STL file; `word` may change each keyword.
@@ -82,7 +82,7 @@ TEST_CASE("ASCII STL: keywords in any letters, blanks before them, two words at 
     INFO(entry.path().filename());
     const TriangleMesh mesh = read_surface(entry.path().string()).mesh;
     CHECK(signed_volume(mesh) == Approx(1));
-    CHECK(check_surface(mesh, true).good());
+    CHECK(check_surface(mesh, SelfIntersections::find).good());
   }
   const std::string body = ascii_stl(as_is);
   for (const std::string& text :

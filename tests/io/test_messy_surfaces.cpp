@@ -24,7 +24,7 @@ TEST_CASE("vertices that a file has apart at seams are one, and keep their textu
     ply << "3 " << 3 * t << ' ' << 3 * t + 1 << ' ' << 3 * t + 2 << '\n';
   const TriangleMesh mesh = parse_surface(ply.str(), "soup.ply").mesh;
   CHECK(mesh.vertices.size() == ball.vertices.size());
-  CHECK(check_surface(mesh, true).first_problem.empty());
+  CHECK(check_surface(mesh, SelfIntersections::find).first_problem.empty());
   for (std::size_t t = 0; t < ball.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
       CHECK(mesh.vertices[mesh.triangles[t][k]] == ball.vertices[ball.triangles[t][k]]);
@@ -63,7 +63,7 @@ TEST_CASE("a polygon that is not convex becomes triangles that do not fold over"
     for (std::size_t i = 1; i <= n; ++i) obj << "\nf " << i << ' ' << i % n + 1 << ' ' << n + i % n + 1 << ' ' << n + i;
     const TriangleMesh mesh = parse_surface(obj.str() + "\n", "prism.obj").mesh;
     CHECK(mesh.triangles.size() == 4 * n - 4);
-    const SurfaceReport report = check_surface(mesh, true);
+    const SurfaceReport report = check_surface(mesh, SelfIntersections::find);
     CHECK(report.first_problem == "");
     CHECK(signed_volume(mesh) == Approx(twice / 2));
   }

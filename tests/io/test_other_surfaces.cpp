@@ -95,7 +95,7 @@ TEST_CASE("a .glb of pieces is read back: places, texture coordinates, colours, 
   const Chunk chunk = colored_block();
   const bool z_up = GENERATE(false, true);
   const TriangleMesh mesh = parse_surface(glb_of({chunk}, {8, 1, z_up}), "a.glb").mesh;
-  CHECK(check_surface(mesh, true).good());
+  CHECK(check_surface(mesh, SelfIntersections::find).good());
   CHECK(mesh.vertices.size() == chunk.mesh.vertices.size());
   CHECK(signed_volume(mesh) == Approx(2));
   CHECK(mesh.attributes.group_names == chunk.mesh.attributes.group_names);
@@ -122,7 +122,7 @@ TEST_CASE("nodes place their meshes, below each other, several times and mirrore
                               "data.bin"));
   const TriangleMesh mesh = read_surface((folder.path / "a.gltf").string()).mesh;
   CHECK(mesh.triangles.size() == 8);
-  CHECK(check_surface(mesh, true).good());
+  CHECK(check_surface(mesh, SelfIntersections::find).good());
   CHECK(signed_volume(mesh) == Approx(16.0 / 6));
   CHECK(bounding_box(mesh).hi.isApprox(Vec3(20, 2, 2)));
   CHECK(mesh.attributes.empty());

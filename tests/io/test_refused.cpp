@@ -82,11 +82,11 @@ TEST_CASE("numbers that no crack, site or point has are refused") {
              Catch::Contains("no extent"));
   TriangleMesh far = make_block({1, 1, 1}, 1);
   far.vertices[3].y() = -1e200;
-  CHECK_THAT(check_surface(far, true).first_problem, Catch::Contains("sensible size"));
+  CHECK_THAT(check_surface(far, SelfIntersections::find).first_problem, Catch::Contains("sensible size"));
   TriangleMesh twice = make_block({1, 1, 1}, 1);
   twice.triangles[0] = {0, 0, 0};
   twice.triangles[1] = {0, 0, 1};
-  CHECK_THAT(check_surface(twice, true).first_problem, Catch::Contains("degenerate"));
+  CHECK_THAT(check_surface(twice, SelfIntersections::find).first_problem, Catch::Contains("degenerate"));
   CHECK_THAT(refusal([] { parse_fronts("front a\nstep 0\n0 0 0\n1 0 0\nstep 1\n0 0 1\n1e308 0 1\n", "f"); }),
              Catch::Contains("sensible size"));
 }

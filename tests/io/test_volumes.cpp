@@ -13,6 +13,7 @@
 #include "kerf/files.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 
@@ -87,7 +88,7 @@ TEST_CASE("a surface is wrapped around parts that overlap, and has their dress")
   boxes.attributes.group_names = {"first", "second"};
   for (std::size_t t = 0; t < 2 * rows; ++t) boxes.attributes.group.push_back(t >= rows);
   const TriangleMesh mesh = wrapped(boxes, 0.04);
-  CHECK(check_surface(mesh, true).first_problem == "");
+  CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
   CHECK(signed_volume(mesh) == Approx(2 - 0.125).epsilon(0.01));
   REQUIRE(mesh.attributes.group.size() == mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -137,7 +138,7 @@ TEST_CASE("an open sheet becomes a plate one voxel thick, at every size, whereve
         const double rim = 3.1416 / 8 * voxel * voxel * (wave > 0 ? 4.1 : 4.0);
         CHECK(signed_volume(plate) > 0.95 * surface * voxel);
         CHECK(signed_volume(plate) < 1.02 * (surface * voxel + rim));
-        CHECK(check_surface(plate, true).first_problem == "");
+        CHECK(check_surface(plate, SelfIntersections::find).first_problem == "");
         for (const auto& [a, b, c] : std::vector(sheet.triangles)) sheet.triangles.push_back({a, c, b});
         CHECK(signed_volume(wrapped_solid(sheet, voxel)) == Approx(signed_volume(plate)).epsilon(1e-6));
       }

@@ -112,8 +112,8 @@ std::vector<Finding> patch(int size) {
     std::vector<Vec3> u;
     for (const Vec3& x : body.nodes.position) u.push_back(linear * x);
     double worst = 0;
-    for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {
-      const auto g = solid.discretisation().points.gradients(b, u);
+    for (std::size_t b = 0; b < SolidDiscretisation::of(solid).points.blocks.size(); ++b) {
+      const auto g = SolidDiscretisation::of(solid).points.gradients(b, u);
       for (std::size_t i = 0; i < g.size(); ++i) worst = std::max(worst, (g[i] - linear).cwiseAbs().maxCoeff());
     }
     found.push_back(
@@ -133,10 +133,10 @@ std::vector<Finding> tension(int size) {
   const auto u = bar.rest(solid);
   // The mean strain of the middle part.
   double strain = 0, across = 0, volume = 0;
-  for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {
-    const auto g = solid.discretisation().points.gradients(b, u);
+  for (std::size_t b = 0; b < SolidDiscretisation::of(solid).points.blocks.size(); ++b) {
+    const auto g = SolidDiscretisation::of(solid).points.gradients(b, u);
     for (std::size_t i = 0; i < g.size(); ++i) {
-      const auto& p = solid.discretisation().points.blocks[b].points[i];
+      const auto& p = SolidDiscretisation::of(solid).points.blocks[b].points[i];
       if (std::abs(p.position.x() - bar.foot - 2.5) > 1) continue;
       volume += p.volume;
       strain += p.volume * g[i](0, 0);

@@ -17,16 +17,18 @@ class Jobs(unittest.TestCase):
     def setUp(self):
         self.model = kerf.shapes.pumpkin(8)
 
-    def test_split_by_planes(self):
-        halves = self.model.split(kerf.plane((0, 0, 0.1), (0, 0, 5)))
+    def test_cut_by_planes(self):
+        halves = self.model.cut(kerf.plane((0, 0, 0.1), (0, 0, 5)))
+        older = self.model.split(kerf.plane((0, 0, 0.1), (0, 0, 5)))
+        self.assertEqual([half.volume for half in halves], [half.volume for half in older])
         self.assertEqual(len(halves), 2)
         self.assertAlmostEqual(sum(half.volume for half in halves), self.model.volume, places=12)
         self.assertEqual({bool(half.vertices[:, 2].mean() > 0.1) for half in halves}, {True, False})
         for half in halves:  # all of each is on one side
             z = half.vertices[:, 2]
             self.assertTrue(z.min() >= 0.1 - 1e-9 or z.max() <= 0.1 + 1e-9)
-        self.assertEqual(len(self.model.split([kerf.plane((0, 0, 0.1), (0, 0, 1)), kerf.plane((0, 0.01, 0), (0, 1, 0.02))])), 4)
-        self.assertEqual(len(self.model.split(kerf.plane((0, 0, 9), (0, 0, 1)))), 1)
+        self.assertEqual(len(self.model.cut([kerf.plane((0, 0, 0.1), (0, 0, 1)), kerf.plane((0, 0.01, 0), (0, 1, 0.02))])), 4)
+        self.assertEqual(len(self.model.cut(kerf.plane((0, 0, 9), (0, 0, 1)))), 1)
         rng = np.random.default_rng(5)
         for normal in rng.normal(size=(8, 3)):  # the plane reaches through the whole model
             self.assertEqual(self.model.crack(kerf.plane(0.3 * normal / np.linalg.norm(normal), normal)).piece_count, 2)
@@ -53,7 +55,7 @@ class Jobs(unittest.TestCase):
         parts = piece.fracture(4, seed=1, jagged=0.02)
         self.assertAlmostEqual(sum(part.volume for part in parts), piece.volume, places=12)
         self.assertTrue(all(part.check() for part in parts))
-        self.assertEqual(len(piece.split(kerf.plane(piece.centroid, (1, 0, 0)))), 2)
+        self.assertEqual(len(piece.cut(kerf.plane(piece.centroid, (1, 0, 0)))), 2)
         self.assertEqual(parts[0].group_names.count("crack"), 1)
         self.assertEqual(kerf.score(piece, pieces=3, seed=1).pieces, 3)
 

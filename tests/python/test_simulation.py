@@ -195,6 +195,17 @@ class Runs(unittest.TestCase):
             later.save(folder / "b.kerf")
             self.assertEqual((folder / "a.kerf").read_bytes(), (folder / "b.kerf").read_bytes())
 
+    def test_simulate_is_a_run_to_the_end(self):
+        frames = []
+        made = kerf.simulate(SCENE, lambda run, stats: frames.append(run.frame), models=model())
+        same = kerf.Simulation(SCENE, models=model())
+        same.run()
+        self.assertEqual(frames, [1, 2, 3, 4, 5, 6])
+        np.testing.assert_array_equal(made.positions, same.positions)
+        self.assertEqual(kerf.simulate(SCENE, lambda run, stats: run.frame < 2, models=model()).frame, 2)
+        with self.assertRaises(kerf.Interrupted):
+            kerf.simulate(SCENE, models=model(), progress=lambda phase, done, total: False)
+
     def test_run_and_stop(self):
         run, frames, reports = simulation(), [], []
         stats = run.run(2, progress=lambda *r: reports.append(r), each=lambda s, stats: frames.append((s.frame, s.time)))

@@ -47,7 +47,7 @@ void check_pieces(const TriangleMesh& model, const Complex& cut, const Pieces& p
     volume += signed_volume(mesh);
     mesh.patch.clear();
     mesh.site.clear();  // as a mesh of its own
-    const auto whole = check_surface(mesh, true);
+    const auto whole = check_surface(mesh, SelfIntersections::find);
     INFO("piece " << p << ": " << whole.first_problem);
     CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&
            whole.self_intersections == 0));
@@ -81,7 +81,7 @@ TEST_CASE("Models fall into whole pieces", "[score][models]") {
     options.jagged.amplitude = 0.01;
     const Score score = make_score(cut, options);
     insert_sheet(cut, score.sheet, 1);
-    CHECK(check_complex(cut, true).first_problem == "");
+    CHECK(check_complex(cut, SelfIntersections::find).first_problem == "");
     const Pieces pieces = find_pieces(cut);
     CHECK(pieces.count == score.pieces);
     CHECK(pieces.count > 1);

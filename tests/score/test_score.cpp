@@ -19,7 +19,7 @@ void check_score(const Complex& model, const ScoreOptions& options) {
   const Score score = make_score(model, options);
   Complex cut = model;
   insert_sheet(cut, score.sheet, model.crack_count() + 1);
-  const auto report = check_complex(cut, true);
+  const auto report = check_complex(cut, SelfIntersections::find);
   CHECK(report.first_problem == "");
   const Pieces before = find_pieces(model), pieces = find_pieces(cut);
   double had = 0, sum = 0;
@@ -40,7 +40,7 @@ void check_score(const Complex& model, const ScoreOptions& options) {
     CHECK(std::abs(signed_volume(mesh) - pieces.volume[p]) <= 1e-12 * had);
     mesh.patch.clear();
     mesh.site.clear();  // as a mesh of its own
-    const auto whole = check_surface(mesh, true);
+    const auto whole = check_surface(mesh, SelfIntersections::find);
     INFO("piece " << p << " " << whole.first_problem);
     CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&
            whole.self_intersections == 0));
@@ -143,7 +143,7 @@ TEST_CASE("A model that is cut already is scored further", "[score]") {
   CHECK(more.pieces == 12);
   insert_sheet(cut, more.sheet, 2);
   CHECK(find_pieces(cut).count == 12);
-  CHECK(check_complex(cut, true).good());
+  CHECK(check_complex(cut, SelfIntersections::find).good());
 }
 
 TEST_CASE("Options without sense are refused", "[score]") {

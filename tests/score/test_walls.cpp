@@ -78,7 +78,7 @@ TEST_CASE("Voronoi walls stand where the nearest site changes", "[voronoi]") {
     insert_sheet(complex, walls, 1);
     CHECK(find_pieces(complex).count >= met.size());
     CHECK(find_pieces(complex).count <= sites.size());
-    CHECK(check_complex(complex, true).good());
+    CHECK(check_complex(complex, SelfIntersections::find).good());
   }
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("Jagged walls meet where flat ones did and do not cross", "[jagged]") 
         CHECK_FALSE((skin.inside(walls.vertices[edge.first]) && skin.inside(walls.vertices[edge.second])));
     Complex complex = Complex::from_skin(ball);
     insert_sheet(complex, walls, 1);
-    CHECK(check_complex(complex, true).good());
+    CHECK(check_complex(complex, SelfIntersections::find).good());
     const Pieces pieces = find_pieces(complex);
     CHECK(pieces.count >= 2);
     for (std::uint32_t f = 0; f < complex.face_count(); ++f)

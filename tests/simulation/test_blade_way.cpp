@@ -24,7 +24,7 @@ FrameStats run(Simulation& sim, int frames) {
   FrameStats work;
   for (int i = 0; i < frames; ++i) work += sim.advance_frame();
   CHECK(work.refused == 0);
-  CHECK(check_complex(sim.body().surface, true).good());
+  CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
   return work;
 }
 

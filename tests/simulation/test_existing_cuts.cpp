@@ -38,7 +38,7 @@ Outcome cut_block(const std::string& blades, int frames, const Vec3& middle = Ve
     outcome.crossings += count_crossings(sim.surface());
     outcome.energy = std::max(outcome.energy, stats.energy);
   }
-  CHECK(check_complex(sim.body().surface, true).good());
+  CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
   outcome.volumes = find_pieces(sim.body().surface).volume;
   std::sort(outcome.volumes.begin(), outcome.volumes.end());
   outcome.crumbs = total.sheet.crumbs;

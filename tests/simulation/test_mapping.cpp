@@ -47,7 +47,7 @@ struct Deformed {
   Body body = block();
   Solid solid{body.nodes, body.graph, {}};
   std::vector<Vec3> u;
-  LazyNodalGradients gradient = lazy_gradients(solid.discretisation(), u);
+  LazyNodalGradients gradient = lazy_gradients(SolidDiscretisation::of(solid), u);
   explicit Deformed(const Map& to = bent) {
     for (const Vec3& x : body.nodes.position) u.push_back(to(x) - x);
   }
@@ -145,7 +145,7 @@ TEST_CASE("where a point was depends neither on what was asked before nor on who
     set_threads(0);
     std::size_t within = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const LazyNodalGradients fresh = lazy_gradients(b.solid.discretisation(), b.u);
+      const LazyNodalGradients fresh = lazy_gradients(SolidDiscretisation::of(b.solid), b.u);
       const InverseDeformation::Location alone = InverseDeformation(b.body, b.u, fresh, all).to_material(points[i]);
       CHECK(found[i].position == alone.position);
       CHECK(found[i].nearest == alone.nearest);
@@ -173,7 +173,7 @@ TEST_CASE("a blade that meets two bodies cuts both, wherever they have moved") {
   CHECK(work.refused == 0);
   CHECK(find_pieces(sim.body().surface).count == 4);
   for (const double v : find_pieces(sim.body().surface).volume) CHECK(v == Approx(0.5).epsilon(0.1));
-  CHECK(check_complex(sim.body().surface, true).good());
+  CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
   CHECK(check_body(sim.body()).first_problem == "");
   CHECK(work.fronts > 2 * 6);  // two fronts in each part of a step
 }
@@ -190,7 +190,7 @@ TEST_CASE("a step is cut in as many parts as its blade's limit asks for") {
     const FrameStats work = sim.advance_frame();
     CHECK(work.refused == 0);
     CHECK(find_pieces(sim.body().surface).count == 2);
-    CHECK(check_complex(sim.body().surface, true).good());
+    CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
     return work.fronts;
   };
   const auto few = run("1.0"), many = run("0.25");

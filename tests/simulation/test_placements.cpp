@@ -58,7 +58,7 @@ Outcome run(const CutScene& cut, Simulation sim) {
   }
   outcome.refused = total.refused;
   outcome.work = total.newton + total.split.crack.triangles_cut;
-  CHECK(check_complex(sim.body().surface, true).good());
+  CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
   const Pieces pieces = find_pieces(sim.body().surface);
   double all = 0;
   for (const double v : pieces.volume) all += v;

@@ -20,7 +20,7 @@ TEST_CASE("a body that a sheet has scored begins in pieces") {
   scene.gravity = {0, 0, -2};
   Simulation sim(scene, make_block({1, 1, 1}, 0.2));
   const Body& body = sim.body();
-  CHECK(check_complex(body.surface, true).good());
+  CHECK(check_complex(body.surface, SelfIntersections::find).good());
   CHECK(find_pieces(body.surface).count == 4);
   std::vector<std::uint32_t> component;
   CHECK(body.graph.components(component) == 4);

@@ -27,7 +27,7 @@ std::string refusal(const TriangleMesh& mesh) {
 TEST_CASE("a skin is its own derived surface") {
   const TriangleMesh mesh = make_pumpkin(6);
   const Complex k = Complex::from_skin(mesh);
-  CHECK(check_complex(k, true).good());
+  CHECK(check_complex(k, SelfIntersections::find).good());
   const TriangleMesh derived = k.two_sided();
   CHECK(derived.triangles.size() == mesh.triangles.size());
   CHECK(signed_volume(derived) == Approx(signed_volume(mesh)).epsilon(1e-14));
@@ -89,7 +89,7 @@ TEST_CASE("a wall across a cube's diagonal makes two pieces, and reading it back
       }
     }
     REQUIRE(done);
-    CHECK(check_complex(k, true).good());
+    CHECK(check_complex(k, SelfIntersections::find).good());
     const Pieces pieces = find_pieces(k);
     REQUIRE(pieces.count == 2);
     CHECK(pieces.volume[0] == Approx(0.5).epsilon(1e-14));

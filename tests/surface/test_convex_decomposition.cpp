@@ -30,7 +30,7 @@ TEST_CASE("Convex parts are closed, cover the mesh and hold less air the more th
       CHECK(volume_of(parts) <= before);
       CHECK(volume_of(parts) >= signed_volume(mesh) * (1 - 1e-12));
       before = volume_of(parts);
-      for (const auto& part : parts) CHECK(check_surface(part, true).first_problem == "");
+      for (const auto& part : parts) CHECK(check_surface(part, SelfIntersections::find).first_problem == "");
       std::vector<TriangleBvh> trees;
       for (const auto& part : parts) trees.emplace_back(corners_of(part));
       const TriangleBvh whole(corners_of(mesh));

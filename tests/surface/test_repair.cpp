@@ -5,6 +5,7 @@
 #include "cases.h"
 #include "kerf/check.h"
 #include "kerf/mesh.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 
@@ -81,7 +82,7 @@ TEST_CASE("triangles missing, turned, twice, and with a vertex twice, are mended
   CHECK(done.flipped_triangles > 0);
   CHECK(done.filled_holes == 1);
   CHECK(done.added_triangles == 1);
-  CHECK(check_surface(mesh, true).first_problem == "");
+  CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
   CHECK(mesh.vertices.size() == ball.vertices.size());
   CHECK(signed_volume(mesh) == Approx(signed_volume(ball)));
   check_dress(mesh);
@@ -96,7 +97,7 @@ TEST_CASE("a hole of many corners is closed, its dress that of its rim") {
   }
   const RepairStats done = repair(mesh);
   CHECK(done.filled_holes == 1);
-  CHECK(check_surface(mesh, true).first_problem == "");
+  CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
   CHECK(signed_volume(mesh) == Approx(volume));
   check_dress(mesh);
 }
@@ -117,7 +118,7 @@ TEST_CASE("a hole closed smoothly goes on from what is around it, as fine as its
     const RepairStats done = repair(mesh, {.smooth_fill = true});
     CHECK(done.filled_holes == 1);
     CHECK(done.smooth_fills == 1);
-    CHECK(check_surface(mesh, true).first_problem == "");
+    CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
     CHECK(mesh.attributes.uv.size() == mesh.triangles.size());
     CHECK(mesh.attributes.group.size() == mesh.triangles.size());
     const double missing = signed_volume(ball) - signed_volume(flat);
@@ -144,13 +145,13 @@ TEST_CASE("a smooth patch that would cross something is not taken") {
   }
   TriangleMesh dome = mesh;
   CHECK(repair(dome, {.smooth_fill = true}).smooth_fills == 1);
-  CHECK(check_surface(dome, true).first_problem == "");
+  CHECK(check_surface(dome, SelfIntersections::find).first_problem == "");
   CHECK(signed_volume(dome) > 1.05);
   add(mesh, make_sphere(6), 0.3, {0.5, 0.5, 1.32}, false);
   const RepairStats done = repair(mesh, {.smooth_fill = true});
   CHECK(done.filled_holes == 1);
   CHECK(done.smooth_fills == 0);
-  CHECK(check_surface(mesh, true).first_problem == "");
+  CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
 }
 
 TEST_CASE("random holes are closed smoothly or flat, without a crossing where there was none") {
@@ -172,7 +173,8 @@ TEST_CASE("random holes are closed smoothly or flat, without a crossing where th
   repair(flat);
   const RepairStats done = repair(mesh, {.smooth_fill = true});
   CAPTURE(done.filled_holes, done.smooth_fills);
-  if (check_surface(flat, true).first_problem == "") CHECK(check_surface(mesh, true).first_problem == "");
+  if (check_surface(flat, SelfIntersections::find).first_problem == "")
+    CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
 }
 
 TEST_CASE("seams that are a little apart are welded within reach") {
@@ -189,7 +191,7 @@ TEST_CASE("seams that are a little apart are welded within reach") {
   repair(apart);
   CHECK(apart.vertices.size() != ball.vertices.size());
   CHECK(repair(soup, {.weld_distance = 1e-5}).welded_vertices == 3 * ball.triangles.size() - ball.vertices.size());
-  CHECK(check_surface(soup, true).first_problem == "");
+  CHECK(check_surface(soup, SelfIntersections::find).first_problem == "");
 }
 
 TEST_CASE("shells are turned outwards, cavities inwards, and what is hidden in a solid goes") {
@@ -205,7 +207,7 @@ TEST_CASE("shells are turned outwards, cavities inwards, and what is hidden in a
     add(mesh, ball, 1, {5, 0, 0}, true);          // beside it all
     const RepairStats done = repair(mesh);
     CHECK(done.dropped_shells == 1);
-    CHECK(check_surface(mesh, true).first_problem == "");
+    CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
     CHECK(signed_volume(mesh) == Approx(one * (2 - 0.027 + 0.001)));
   }
 }
@@ -259,5 +261,5 @@ TEST_CASE("a hole whose smooth patch would have millions of triangles is closed 
   const RepairStats done = repair(mesh, {.smooth_fill = true});
   CHECK(done.filled_holes == 1);
   CHECK(done.smooth_fills == 0);
-  CHECK(check_surface(mesh, false).first_problem == "");
+  CHECK(check_surface(mesh, SelfIntersections::ignore).first_problem == "");
 }

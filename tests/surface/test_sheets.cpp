@@ -4,6 +4,7 @@
 
 #include "kerf/check.h"
 #include "kerf/mesh.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 
@@ -78,7 +79,7 @@ TEST_CASE("a double-sided card is one sheet, but a wall between two cells is dro
   cells.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 1, 2}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
   CHECK(take_sheets(cells).triangles.empty());
   CHECK(cells.triangles.size() == 6);
-  CHECK(check_surface(cells, true).first_problem == "");
+  CHECK(check_surface(cells, SelfIntersections::find).first_problem == "");
 }
 
 TEST_CASE("sheets beside and around solids are told apart from them") {

@@ -10,6 +10,7 @@
 #include "kerf/complex.h"
 #include "kerf/error.h"
 #include "kerf/mesh.h"
+#include "kerf/repair.h"
 
 using namespace geo;
 
@@ -92,7 +93,7 @@ TEST_CASE("a two-sided surface is tested by its skin: a shell inside out beside 
   add(mesh, ball, 1, Vec3::Zero(), out);
   add(mesh, ball, 0.5, {3, 0, 0}, in);
   const TriangleMesh two_sided = Complex::from_skin(mesh).two_sided();
-  CHECK_THAT(check_surface(two_sided, true).first_problem, Catch::Contains("shell 2"));
+  CHECK_THAT(check_surface(two_sided, SelfIntersections::find).first_problem, Catch::Contains("shell 2"));
 }
 
 TEST_CASE("orientation is exact where the volume is below rounding") {
@@ -136,10 +137,10 @@ TEST_CASE("random nested shells: kinds are those that were made, wherever the sh
     }
     TriangleMesh mended = mesh;
     repair(mended, {.inner = InnerShells::cavities});
-    CHECK(check_surface(mended, true).first_problem == "");
+    CHECK(check_surface(mended, SelfIntersections::find).first_problem == "");
     CHECK(mended.triangles.size() == mesh.triangles.size());
     repair(mesh);
-    CHECK(check_surface(mesh, true).first_problem == "");
+    CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
   }
 }
 
@@ -149,7 +150,7 @@ TEST_CASE("repair decides about inner shells by the winding number, or as it is 
   const auto volume = [&](const std::vector<Facing>& facings, InnerShells inner, RepairStats& done) {
     TriangleMesh mesh = nested(facings, ball);
     done = repair(mesh, {.inner = inner});
-    CHECK(check_surface(mesh, true).first_problem == "");
+    CHECK(check_surface(mesh, SelfIntersections::find).first_problem == "");
     return signed_volume(mesh);
   };
   RepairStats done;

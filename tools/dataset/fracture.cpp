@@ -36,7 +36,7 @@ Model read_model(const std::string& path, const std::string& name, bool repair, 
   tool::require_whole(file.mesh, path, "give the model before the cut");
   file.mesh.attributes = {};
   file.mesh.source.clear();
-  Model model{name, {}, tool::complex_of(file, path), 0};
+  Model model{.name = name, .mesh = {}, .complex = tool::complex_of(file, path), .volume = 0};
   model.volume = geo::signed_volume(file.mesh);
   model.mesh = std::move(file.mesh);
   return model;
@@ -89,7 +89,7 @@ void measure_and_check(Fracture& fracture, double volume) {
     Piece& piece = fracture.pieces[p];
     mesh.vertices.swap(piece.vertices);
     mesh.triangles.swap(piece.faces);
-    const auto report = geo::check_surface(mesh, false);
+    const auto report = geo::check_surface(mesh, geo::SelfIntersections::ignore);
     if (!report.good()) throw geo::GeometryError(name_of(p) + ": " + report.first_problem);
     piece.volume = geo::signed_volume(mesh);
     piece.centroid = geo::mass_properties(mesh).centroid;
@@ -130,7 +130,7 @@ Fracture break_model(const Model& model, const Recipe& recipe) {
   geo::Complex cut;
   const geo::Score score = geo::make_score(model.complex, score_options(recipe), {}, &cut);
   const geo::Pieces found = geo::find_pieces(cut);
-  Fracture fracture{recipe, {}, geo::find_bonds(cut, found), {}};
+  Fracture fracture{.recipe = recipe, .pieces = {}, .bonds = geo::find_bonds(cut, found), .walls = {}};
   const Labels labels = labels_of(fracture.bonds);
   fracture.pieces = pieces_of(cut, found, labels);
   fracture.walls = walls_of(cut, found, labels);

@@ -43,7 +43,7 @@ constexpr std::uint64_t drawing = 1, turning = 2;  // purposes; pieces count up 
 
 Recipe recipe_of(const Settings& s, geo::Pattern pattern, std::uint64_t seed) {
   Generator random(seed, drawing);
-  Recipe r{pattern, seed, 0, s.attempts, 0, s.bumps};
+  Recipe r{.pattern = pattern, .seed = seed, .pieces = 0, .attempts = s.attempts, .jagged = 0, .bumps = s.bumps};
   r.pieces = static_cast<int>(std::floor(random.uniform({s.pieces.low, s.pieces.high + 1})));
   // Three digits after the first: the command that is recorded stays short.
   const double jagged = random.uniform(s.jagged);

@@ -43,7 +43,7 @@ std::string report_body(const geo::KerfFile& file, const geo::Body& body, std::s
   if (options.check) {
     result = geo::check_body(body);
     problem = result.first_problem;
-    if (problem.empty()) problem = geo::check_complex(body.surface, true).first_problem;
+    if (problem.empty()) problem = geo::check_complex(body.surface, geo::SelfIntersections::find).first_problem;
   } else {
     result.graph_components = body.graph.components(component);
     result.pieces = geo::find_pieces(body.surface).count;

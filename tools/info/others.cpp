@@ -38,7 +38,7 @@ std::string check_frame(const std::string& path) {
   geo::TriangleMesh mesh = geo::read_surface(path).mesh;
   mesh.patch.clear();
   mesh.site.clear();
-  const geo::SurfaceReport report = geo::check_surface(mesh, false);
+  const geo::SurfaceReport report = geo::check_surface(mesh, geo::SelfIntersections::ignore);
   if (report.closed && report.manifold && report.oriented) return {};
   return fs::path(path).filename().string() + ": " + report.first_problem;
 }

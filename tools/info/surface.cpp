@@ -26,7 +26,8 @@ std::vector<double> edge_lengths(const geo::TriangleMesh& mesh) {
 
 std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& options, Report& report) {
   const auto& mesh = file.mesh;
-  const auto result = geo::check_surface(mesh, options.check);
+  const auto result =
+      geo::check_surface(mesh, options.check ? geo::SelfIntersections::find : geo::SelfIntersections::ignore);
   const auto cracks =
       static_cast<std::size_t>(std::count_if(mesh.patch.begin(), mesh.patch.end(), [](auto p) { return p > 0; }));
   std::size_t pieces = 0, front_edges = 0;

@@ -16,9 +16,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double farthest = 1e9;       // coordinate, model units
-constexpr int deepest = 8;             // nesting
-constexpr std::size_t most_rows = 64;  // of a list: more do not fit into a message
+constexpr double farthest = 1e9;      // coordinate, model units
+constexpr int deepest = 8;            // nesting
+constexpr std::size_t max_rows = 64;  // of a list: more do not fit into a message
 
 void require_shallow(std::string_view text) {
   int depth = 0;
@@ -78,7 +78,7 @@ class Table {
   std::vector<std::pair<geo::Vec3, std::vector<double>>> pairs(const char* key, std::size_t more) {
     const Json* value = find(key);
     if (!value) return {};
-    if (!value->is_array() || value->size() > most_rows) fail(key, "a list of at most " + std::to_string(most_rows));
+    if (!value->is_array() || value->size() > max_rows) fail(key, "a list of at most " + std::to_string(max_rows));
     std::vector<std::pair<geo::Vec3, std::vector<double>>> rows;
     for (const Json& row : *value) {
       if (!row.is_array() || row.size() != 3 + more) fail(key, "rows of " + std::to_string(3 + more) + " numbers");
@@ -142,8 +142,12 @@ EdgePose across_surface(const geo::Vec3& point, const geo::Vec3& normal, double 
 
 Stroke knife_of(Table& t) {
   const geo::Vec3 eye = t.point("eye");
-  Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), eye,
-           t.direction("ray"),           t.number("depth", 1e-9, farthest)};
+  Stroke s{.id = t.count("id", largest_count),
+           .input = t.count("input", largest_count),
+           .phase = phase_of(t),
+           .origin = eye,
+           .direction = t.direction("ray"),
+           .depth = t.number("depth", 1e-9, farthest)};
   s.origin = on_ray(eye, s.direction, t.number("from", 0, farthest)).origin;
   for (const auto& [ray, from] : t.pairs("way", 1))
     s.way.push_back(on_ray(eye, t.unit("way", ray), t.bounded("way", from[0], 0, farthest)));
@@ -151,8 +155,12 @@ Stroke knife_of(Table& t) {
 }
 
 Stroke scalpel_of(Table& t) {
-  Stroke s{t.count("id", largest_count), t.count("input", largest_count),  phase_of(t), t.point("point"),
-           t.direction("normal"),        t.number("depth", 1e-9, farthest)};
+  Stroke s{.id = t.count("id", largest_count),
+           .input = t.count("input", largest_count),
+           .phase = phase_of(t),
+           .origin = t.point("point"),
+           .direction = t.direction("normal"),
+           .depth = t.number("depth", 1e-9, farthest)};
   for (const auto& [point, normal] : t.pairs("way", 3))
     s.way.push_back(across_surface(point, t.unit("way", {normal[0], normal[1], normal[2]}), s.depth));
   const EdgePose pose = across_surface(s.origin, s.direction, s.depth);
@@ -170,7 +178,11 @@ Spot spot_of(Table& t) {
 }
 
 Grab grab_of(Table& t) {
-  Grab g{t.count("id", largest_count), t.count("input", largest_count), grab_phase_of(t), {}, t.point("to")};
+  Grab g{.id = t.count("id", largest_count),
+         .input = t.count("input", largest_count),
+         .phase = grab_phase_of(t),
+         .spot = {},
+         .to = t.point("to")};
   if (t.find("held")) g.held = t.count("held", largest_count);
   if (g.phase == Phase::begin && !g.held) {
     g.spot = spot_of(t);
@@ -184,8 +196,10 @@ Grab grab_of(Table& t) {
 Pin pin_of(Table& t) { return {spot_of(t), t.flag("on"), t.optional_number("radius", 0, farthest).value_or(0)}; }
 
 Set set_of(Table& t) {
-  return {t.optional_number("young", 1, 1e12), t.optional_number("friction", 0, 1),
-          t.optional_number("damping", 0, 1e3), t.optional_point("gravity")};
+  return {.young = t.optional_number("young", 1, 1e12),
+          .friction = t.optional_number("friction", 0, 1),
+          .damping = t.optional_number("damping", 0, 1e3),
+          .gravity = t.optional_point("gravity")};
 }
 
 template <class Read>

@@ -246,7 +246,12 @@ class Loop {
     std::string message = message_;
     if (message.empty() && pacer_.slow())
       message = "slower than real time: " + std::to_string(static_cast<int>(100 * pacer_.rate() + 0.5)) + " %";
-    return {pacer_.fps(), pacer_.rate(), pacer_.step(), session().effort(), paused_, message};
+    return {.fps = pacer_.fps(),
+            .rate = pacer_.rate(),
+            .step = pacer_.step(),
+            .effort = session().effort(),
+            .paused = paused_,
+            .message = message};
   }
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> edges() const {
     auto list = std::make_shared<std::vector<std::pair<std::uint32_t, std::uint32_t>>>();

@@ -38,8 +38,8 @@ using HttpResponse = http::response<http::string_body>;
 
 namespace {
 
-constexpr int most_connections = 64, most_messages = 240;  // at a time; per second and page
-constexpr std::size_t most_notices = 16;                   // that wait for a page
+constexpr int max_connections = 64, max_messages = 240;  // at a time; per second and page
+constexpr std::size_t max_notices = 16;                  // that wait for a page
 constexpr auto request_time = std::chrono::seconds(10);
 constexpr auto farewell_time = std::chrono::milliseconds(500);  // for pages to hear of the end
 constexpr std::uint64_t largest_model = 256 << 20;              // bytes of a file that a page opens
@@ -152,7 +152,7 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     });
   }
   void tell(std::string_view key, std::string_view sentence) {
-    if (notices_.size() >= most_notices) return;
+    if (notices_.size() >= max_notices) return;
     notices_.push_back(encode_notice(key, sentence, 0));
     pump();
   }
@@ -171,7 +171,10 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
       message_ = encode_graph(*s, sequence_);
     } else if (s->number != sent_) {
       const auto taken = s->taken.find(id_);
-      const Content content{++sequence_, nodes_, stress_, taken == s->taken.end() ? 0 : taken->second};
+      const Content content{.sequence = ++sequence_,
+                            .nodes = nodes_,
+                            .stress = stress_,
+                            .taken = taken == s->taken.end() ? 0 : taken->second};
       const bool knows = known_ && scene_ == s->scene;  // another scene where another model was opened
       message_ = knows ? encode_frame(*s, *known_, content) : encode_state(*s, content);
       known_ = s->topology;
@@ -247,8 +250,8 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
       second_ = now;
       messages_ = 0;
     }
-    if (++messages_ == most_messages + 1) tell("error", "more than 240 messages a second are left out");
-    return messages_ <= most_messages;
+    if (++messages_ == max_messages + 1) tell("error", "more than 240 messages a second are left out");
+    return messages_ <= max_messages;
   }
   void acknowledged(std::uint32_t sequence) {
     if (awaited_ == sequence) awaited_.reset();
@@ -441,7 +444,7 @@ void Server::Impl::accept() {
   acceptor.async_accept([this](error_code error, tcp::socket socket) {
     if (!acceptor.is_open()) return;
     if (error) return accept_later();
-    if (connections < most_connections) std::make_shared<Visit>(*this, std::move(socket))->start();
+    if (connections < max_connections) std::make_shared<Visit>(*this, std::move(socket))->start();
     accept();
   });
 }

@@ -95,11 +95,11 @@ void warn_of_coarse_models(const Setup& setup, const geo::Body& body, const tool
 
 std::vector<std::string> thin_models(const Setup& setup, const geo::Body& body) {
   // Ears and rims taper off in most models, and hardly matter for how these bend.
-  constexpr double least_share = 0.1;
+  constexpr double least_thin_surface = 0.1;
   std::vector<std::string> sentences;
   for (std::size_t b = 0; b < setup.models.bodies.size(); ++b) {
     const geo::ThinMaterial thin = geo::find_thin_material(setup.models.bodies[b], body.nodes);
-    if (thin.share < least_share) continue;
+    if (thin.share < least_thin_surface) continue;
     const double volume = geo::signed_volume(setup.models.bodies[b]);
     sentences.push_back(fs::path(setup.scene.bodies[b].mesh).filename().string() + ": " +
                         tool::rounded(std::round(100 * thin.share)) + " % of its surface has walls of about " +

@@ -23,7 +23,7 @@ void write_whole_run(const RunFolder& folder, int last, double frame_rate, char 
   const auto frames = [&](std::size_t part) {
     return [&, part](std::size_t i) { return geo::read_surface((folder.path / parts[part][i]).string()).mesh; };
   };
-  geo::UsdRun usd{parts[0].size(), frame_rate, up, frames(0), {}};
+  geo::UsdRun usd{.frames = parts[0].size(), .frame_rate = frame_rate, .up = up, .surface = frames(0), .obstacles = {}};
   if (obstacles) usd.obstacles = frames(1);
   geo::write_all((folder.path / "run.usda").string(), [&](std::ostream& out) { geo::write_usda(out, usd); });
 }

@@ -22,11 +22,15 @@ void add_seams(Stage& stage) {
     if (at.size() != 2) continue;
     const bool seam = (at[0] == 0) != (at[1] == 0), tip = at[0] != 0 && at[0] == -at[1];
     if (seam)
-      stage.sticks.push_back(
-          {mesh.vertices[edge.first], mesh.vertices[edge.second], width, Color{0.01f, 0.45f, 0.08f}});
+      stage.sticks.push_back({.a = mesh.vertices[edge.first],
+                              .b = mesh.vertices[edge.second],
+                              .radius = width,
+                              .color = Color{0.01f, 0.45f, 0.08f}});
     if (tip)
-      stage.sticks.push_back(
-          {mesh.vertices[edge.first], mesh.vertices[edge.second], width, Color{0.75f, 0.02f, 0.02f}});
+      stage.sticks.push_back({.a = mesh.vertices[edge.first],
+                              .b = mesh.vertices[edge.second],
+                              .radius = width,
+                              .color = Color{0.75f, 0.02f, 0.02f}});
   }
 }
 
@@ -42,10 +46,11 @@ void add_fronts(Stage& stage, const std::vector<geo::Front>& fronts, const Look&
       const Color color = viridis(front.steps.size() > 1 ? double(s) / double(front.steps.size() - 1) : 0);
       const std::size_t n = points.size();
       for (std::size_t i = 0; i + (front.closed ? 0 : 1) < n; ++i)
-        stage.sticks.push_back({points[i], points[(i + 1) % n], width, color});
+        stage.sticks.push_back({.a = points[i], .b = points[(i + 1) % n], .radius = width, .color = color});
       if (s + 1 < front.steps.size() && s + 1 <= look.last_step && front.steps[s + 1].size() == n)
         for (std::size_t i = 0; i < n; ++i)
-          stage.sticks.push_back({points[i], front.steps[s + 1][i], 0.4 * width, Color{0.4f, 0.4f, 0.42f}});
+          stage.sticks.push_back(
+              {.a = points[i], .b = front.steps[s + 1][i], .radius = 0.4 * width, .color = Color{0.4f, 0.4f, 0.42f}});
     }
 }
 

@@ -48,10 +48,14 @@ void add_neighborhood(Stage& stage, const geo::Body& body, const std::vector<Vec
     const std::uint32_t j = n.to.value;
     stage.spheres.push_back({position[j], 0.17 * spacing[j], n.hidden ? orange : bright});
     if (!n.hidden)
-      stage.sticks.push_back({position[i], position[j], 0.07 * spacing[i] * (1.15 - n.distance / reach), bright});
+      stage.sticks.push_back({.a = position[i],
+                              .b = position[j],
+                              .radius = 0.07 * spacing[i] * (1.15 - n.distance / reach),
+                              .color = bright});
     else
       for (auto step = from.find(j); step != from.end(); step = from.find(step->second))
-        stage.sticks.push_back({position[step->first], position[step->second], 0.03 * spacing[i], orange});
+        stage.sticks.push_back(
+            {.a = position[step->first], .b = position[step->second], .radius = 0.03 * spacing[i], .color = orange});
   }
 }
 
@@ -72,7 +76,10 @@ void add_nodes(Stage& stage, const Subject& subject, const std::vector<Vec3>& po
   }
   if (!subject.body) return;
   const auto stick = [&](std::uint32_t i, std::uint32_t j, double width, const Color& color) {
-    stage.sticks.push_back({position[i], position[j], width * std::min(nodes.spacing[i], nodes.spacing[j]), color});
+    stage.sticks.push_back({.a = position[i],
+                            .b = position[j],
+                            .radius = width * std::min(nodes.spacing[i], nodes.spacing[j]),
+                            .color = color});
   };
   if (look.edges)
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
@@ -96,10 +103,11 @@ void add_trees(Stage& stage, const Subject& subject, const std::vector<Vec3>& po
     if (subject.row_of[v] == ~0u || !binding.master[v].valid()) continue;
     const geo::NodeId node = binding.master_node[binding.master[v].index()];
     if (look.node && node.value != *look.node) continue;
-    if (binding.parent[v].value != v) stage.sticks.push_back({at(v), at(binding.parent[v].value), width, green});
+    if (binding.parent[v].value != v)
+      stage.sticks.push_back({.a = at(v), .b = at(binding.parent[v].value), .radius = width, .color = green});
     if (binding.parent[v].value != v || !node.valid()) continue;
     stage.spheres.push_back({at(v), 3 * width, green});
-    stage.sticks.push_back({at(v), position[node.index()], 1.4 * width, red});
+    stage.sticks.push_back({.a = at(v), .b = position[node.index()], .radius = 1.4 * width, .color = red});
   }
 }
 

@@ -57,7 +57,10 @@ MovingNodes read_moving_nodes(const Run& run, const Subject& checkpoint, const s
   for (std::size_t f = 0; f < run.nodes.size(); ++f) {
     geo::report(progress, "nodes", f, run.nodes.size());
     geo::FrameNodes file = geo::parse_frame_nodes(geo::read_all(run.nodes[f]), run.nodes[f]);
-    MovingNodes::Frame frame{file.nodes.size(), std::move(file.nodes.position), std::move(file.stress), {}};
+    MovingNodes::Frame frame{.count = file.nodes.size(),
+                             .position = std::move(file.nodes.position),
+                             .stress = std::move(file.stress),
+                             .piece_of = {}};
     frame.count = std::min(frame.count, rest.size());  // a run that was stopped has nodes newer than its checkpoint
     frame.position.resize(frame.count);
     frame.stress.resize(frame.count);

@@ -55,14 +55,14 @@ bool BroadPhase::update(std::span<const Triangle> triangles, const std::function
 
 double BroadPhase::update_for_share(std::span<const Triangle> triangles, const std::function<Box3(std::size_t)>& box,
                                     double margin, const std::function<void(double)>& take) {
-  constexpr double least_share = 1.0 / 128;
-  most_of_motion_ = most_per_triangle * triangles.size();
+  constexpr double least_motion = 1.0 / 128;
+  most_of_motion_ = max_per_triangle * triangles.size();
   if (update(triangles, box, margin, nullptr, most_of_motion_)) return 1;
   // Long triangles that are oblique to the axes have many pairs at rest.
   take(0);
   update(triangles, box, margin);
   most_of_motion_ += pairs_.size();
-  for (double share = 1; share >= least_share; share /= 2) {
+  for (double share = 1; share >= least_motion; share /= 2) {
     take(share);
     if (update(triangles, box, margin, nullptr, most_of_motion_)) return share;
   }

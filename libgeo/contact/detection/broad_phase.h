@@ -20,7 +20,7 @@ class BroadPhase {
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   /// Pairs per triangle, on average, that a motion may add to those at rest. With more, it takes
   /// triangles far past each other, and its cost has no bound.
-  static constexpr std::size_t most_per_triangle = 200;
+  static constexpr std::size_t max_per_triangle = 200;
 
   /// Updates pairs() for new boxes, box(t) for triangle t. With `changed`, only marked triangles
   /// have boxes that differ from the previous call. A triangle that has left its box gets a new

@@ -121,7 +121,11 @@ HWY_INLINE void corners_over(const V3 (&p)[3], const V3 (&q)[3], int feature, bo
 HWY_INLINE Closest closest_of(const V3 (&a)[3], const V3 (&b)[3]) {
   const Doubles d;
   const V zero = hn::Zero(d);
-  Closest best{hn::Set(d, std::numeric_limits<double>::infinity()), {zero, zero, zero}, zero, zero, zero};
+  Closest best{.squared = hn::Set(d, std::numeric_limits<double>::infinity()),
+               .difference = {zero, zero, zero},
+               .feature = zero,
+               .s = zero,
+               .t = zero};
   V3 u[3], v[3];
   V uu[3], vv[3], inverse_uu[3], inverse_vv[3];
   for (int i = 0; i < 3; ++i) {

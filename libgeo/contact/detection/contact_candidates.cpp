@@ -180,7 +180,7 @@ std::vector<ContactCandidate> find_contact_candidates(const SurfaceMotion& m, Br
       };
       const auto examine = [&](std::size_t i, const CandidateAxes& axes, std::size_t lane) {
         const SimplexPair pair = simplex_pair(i);
-        ContactCandidate candidate{pair.a, pair.b, Vec3::Zero(), {}, 0};
+        ContactCandidate candidate{.a = pair.a, .b = pair.b, .normal = Vec3::Zero(), .closest = {}, .gap = 0};
         if (set_candidate(m, axes, lane, candidate)) found[c].push_back(candidate);
       };
       CandidateAxisBatch<decltype(examine)> batch(m.from, m.to, false, examine);

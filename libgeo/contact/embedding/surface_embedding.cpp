@@ -43,7 +43,9 @@ Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Ve
 class SurfaceEmbedder {
  public:
   explicit SurfaceEmbedder(const EmbeddingInput& input)
-      : in_(input), k_(input.after), gradient_(lazy_gradients(input.solid.discretisation(), input.state.displacement)) {
+      : in_(input),
+        k_(input.after),
+        gradient_(lazy_gradients(SolidDiscretisation::of(input.solid), input.state.displacement)) {
     result_.surface = updated_contact_surface(in_.before, k_, in_.crack);
     result_.positions = in_.positions;
     result_.positions.resize(result_.surface.site.size(), Vec3::Zero());
@@ -310,7 +312,10 @@ class SurfaceEmbedder {
       for (int k = 0; k < 3; ++k)
         displacement +=
             w[k] * (result_.positions[k_.surface_vertex(side, k).index()] - rest[static_cast<std::size_t>(k)]);
-      result.push_back({c, c + displacement, reference_[k_.surface_vertex(side, 0).index()], distance});
+      result.push_back({.rest = c,
+                        .now = c + displacement,
+                        .reference = reference_[k_.surface_vertex(side, 0).index()],
+                        .distance = distance});
     }
     return result;
   }
@@ -332,7 +337,9 @@ class SurfaceEmbedder {
       const auto nodes = reference_[v].valid() ? nodes_of(reference_[v]) : nodes_near(rest(v));
       return nodes.empty() ? Mat3(Mat3::Identity()) : Mat3(Mat3::Identity() + gradient_[nodes[0].index()]);
     };
-    if (!untangle({s, rest, gradient, fresh, in_.gap}, result_.positions, marked).empty())
+    if (!untangle({.surface = s, .rest = rest, .gradient = gradient, .fresh = fresh, .gap = in_.gap}, result_.positions,
+                  marked)
+             .empty())
       throw GeometryError("the surface would cross itself where the crack begins to open");
   }
 

@@ -147,7 +147,10 @@ void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle&
     // Along a direction that noise has turned, large triangles overlap by far more than they cross.
     offer_features(reference, now, axis);
     if (axis.normal.isZero(0)) continue;
-    out.push_back({a, b, axis.normal, wanted_separation(reference, difference.norm(), in.gap)});
+    out.push_back({.a = a,
+                   .b = b,
+                   .normal = axis.normal,
+                   .separation = wanted_separation(reference, difference.norm(), in.gap)});
   }
 }
 
@@ -157,7 +160,7 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
                                    std::vector<std::uint8_t>& marked) {
   // Limits of effort: searches for crossings, and sweeps over the constraints after each search.
   // Larger: more attempts before the crack step is refused.
-  constexpr int most_rounds = 16, most_sweeps = 4;
+  constexpr int max_rounds = 16, max_sweeps = 4;
   const ContactSurface& surface = in.surface;
   const auto representative = coincident_representatives(surface.site, positions);
   const auto represented = [&](std::size_t t) {
@@ -173,7 +176,7 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
     const auto crossings = find_crossings(surface.triangles, positions, representative, true, &marked);
     // In the second half of the rounds, gives up when crossings become more.
     fewest = std::min(fewest, crossings.size());
-    if (crossings.empty() || round == most_rounds || (round >= most_rounds / 2 && crossings.size() > fewest))
+    if (crossings.empty() || round == max_rounds || (round >= max_rounds / 2 && crossings.size() > fewest))
       return crossings;
     if (start.empty()) {
       start = positions;
@@ -183,7 +186,7 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
       if (known.insert(pair).second)
         add_constraints(in, represented(pair.first), represented(pair.second),
                         !in.fresh[pair.first] && !in.fresh[pair.second], start, positions, constraints);
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    for (int sweep = 0; sweep < max_sweeps; ++sweep) {
       bool any = false;
       for (const SeparationConstraint& c : constraints) any |= project(c, positions, moved);
       if (!any) break;

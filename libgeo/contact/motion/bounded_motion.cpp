@@ -17,15 +17,25 @@
 namespace geo {
 namespace {
 
-// Limits of effort. None changes whether something crosses; they bound what one step may cost.
-constexpr int max_rounds = 8;          // of motion and reduction of the tracking error; more: nearer to the targets
-constexpr int max_projections = 240;   // in all rounds; what is left takes the fallback
-constexpr int max_evaluations = 1000;  // of constraints, per triangle, in all projections; then no further round
-constexpr int patience = 6;            // projections without progress, after which pairs become rigid
-constexpr int max_growths = 20;        // of the fallback's set of vertices
-constexpr int growths_to_follow = 10;  // after which all vertices follow the field
-// Progress: a quarter fewer pairs are uncertified.
+// Limits of effort. None changes whether something crosses: the fallback and the exact test follow.
+// They bound what one step may cost where walls are pressed far into each other (decision 083).
+//
+// Progress is a quarter fewer uncertified pairs. Without it for `patience` projections, pairs turn
+// rigid. If each progress takes all its patience, 240 projections make 240 / 6 = 40 of them, and
+// (3/4)⁴⁰ = 1e-5 leaves one pair of a hundred thousand.
 constexpr std::size_t progress_divisor = 4;
+constexpr int patience = 6;
+constexpr int max_projections = 240;  // in all rounds; what is left takes the fallback
+// Four for each of 240 projections, rounded. Triangles have more only where a motion takes them far
+// past each other.
+constexpr int max_evaluations = 1000;  // of constraints, per triangle, in all projections; then no further round
+// The tracking error that is left after them is made up in the next time steps. More rounds bring a
+// vertex nearer to its target sooner, and cost more.
+constexpr int max_rounds = 8;
+// The fallback's set of vertices grows while its own motion makes triangles cross. After half of
+// the growths all vertices follow the field; after all of them, everything moves as one.
+constexpr int max_growths = 20;
+constexpr int growths_to_follow = 10;
 // Margin of boxes in the broad phase, in edges: projected vertices mostly stay within it. Larger:
 // more pairs, fewer new queries, the same result.
 constexpr double box_margin = 0.05;
@@ -123,7 +133,14 @@ class CrossingFreeMotion {
   }
 
   MotionCertifier certifier(const std::vector<Vec3>& start, const std::vector<Vec3>& next) {
-    return {{surface_, fans_, m_.representative, two_sided_, start, next, rounding_}, near_.planes()};
+    return {{.surface = surface_,
+             .fans = fans_,
+             .representative = m_.representative,
+             .two_sided = two_sided_,
+             .start = start,
+             .next = next,
+             .rounding = rounding_},
+            near_.planes()};
   }
 
   // Changes `next` until the motion from `start` is certified. Returns whether it is.

@@ -71,9 +71,9 @@ Vec3 moved_vertex(const Vec3& from, const Vec3& to, double limit, std::span<cons
     if (const Vec3 move = x - from; move.norm() > limit) x = from + limit / move.norm() * move;
   };
   limit_move();
-  constexpr int most_rounds = 8;   // over all planes; a move that still crosses one is cut there
+  constexpr int max_rounds = 8;    // over all planes; a move that still crosses one is cut there
   constexpr double margin = 0.02;  // of half a gap: projections end beyond planes, not on them
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     bool inside = true;
     for (const auto& [p, side] : planes)
       if (const double lack = p->half * (1 + margin) - side * (p->normal.dot(x) - p->at);
@@ -121,7 +121,7 @@ std::vector<std::vector<SeparatingPlane>> find_planes(const PlaneSeparatedMotion
         const bool adjacent = number % 2 != 0;
         disjoint_subsimplices(m.triangles[t], m.triangles[o], parts);
         const auto& [a, b] = parts[number / 2 % 2];
-        SeparatingPlane plane{a, b, Vec3::Zero(), 0, 0};
+        SeparatingPlane plane{.a = a, .b = b, .normal = Vec3::Zero(), .at = 0, .half = 0};
         if (place_plane(m, at, adjacent, axes, lane, plane)) found[c].push_back(plane);
       };
       CandidateAxisBatch<decltype(add_plane)> batch(at, at, false, add_plane);

@@ -71,7 +71,12 @@ void SeparationProjection::add(std::span<const Pair> pairs, const std::vector<Ve
     for (std::size_t k = 0; k < count; ++k) {
       for (Simplex* simplex : {&simplices[k].first, &simplices[k].second})
         for (int i = simplex->size; i < 3; ++i) simplex->v[i] = simplex->v[0];
-      constraints_[first + k] = {simplices[k].first, simplices[k].second, Vec3::Zero(), 0, pair.first, pair.second};
+      constraints_[first + k] = {.a = simplices[k].first,
+                                 .b = simplices[k].second,
+                                 .axis = Vec3::Zero(),
+                                 .separation = 0,
+                                 .s = pair.first,
+                                 .t = pair.second};
       added.push_back(first + k);
     }
   }
@@ -93,7 +98,7 @@ bool SeparationProjection::make_rigid(std::span<const Pair> pairs) {
   return changed;
 }
 
-std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t most_evaluations) const {
+std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t max_evaluations) const {
   constexpr int max_sweeps = 30;  // bounds the effort; bounded_motion.cpp tests and projects again
   constexpr double margin = 0.1;  // of a constraint's separation: projections do not end on its bound
   const ConstraintsOfVertices of_vertex(next.size(), constraints_);
@@ -114,7 +119,7 @@ std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t m
     }
   };
   std::size_t evaluations = 0;
-  for (int sweep = 0; sweep < max_sweeps && !active.empty() && evaluations < most_evaluations; ++sweep) {
+  for (int sweep = 0; sweep < max_sweeps && !active.empty() && evaluations < max_evaluations; ++sweep) {
     evaluations += active.size();
     for (const auto i : active) {
       if (rigid[i]) continue;

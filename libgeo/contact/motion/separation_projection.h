@@ -45,8 +45,8 @@ class SeparationProjection {
   /// Moves `next`, per vertex, until all constraints hold, or for a number of sweeps: Gauss–Seidel
   /// in the order in which constraints were added, each moving both sides by the same least amount.
   /// Zones are made rigid after each sweep. Returns the number of evaluations of constraints;
-  /// no sweep begins once this is `most_evaluations`.
-  std::size_t project(std::vector<Vec3>& next, std::size_t most_evaluations = ~std::size_t(0)) const;
+  /// no sweep begins once this is `max_evaluations`.
+  std::size_t project(std::vector<Vec3>& next, std::size_t max_evaluations = ~std::size_t(0)) const;
 
  private:
   struct Constraint {

@@ -55,7 +55,8 @@ std::size_t advance_vertices(const std::vector<Triangle>& triangles, const std::
   move_straight(triangles, lagging.pairs, lagging.target, gap, at);
   for (std::size_t v = 0; v < at.size(); ++v)
     if (lagging.limit[v] > 0) lagging.limit[v] = std::min(lagging.limit[v], (lagging.target[v] - at[v]).norm());
-  return move_between_planes({triangles, lagging.pairs, lagging.target, lagging.limit, gap}, at);
+  return move_between_planes(
+      {.triangles = triangles, .pairs = lagging.pairs, .to = lagging.target, .limit = lagging.limit, .gap = gap}, at);
 }
 
 void advance_free_vertices(const std::vector<Triangle>& triangles, const std::vector<Vec3>& to, double edge, double gap,

@@ -24,7 +24,12 @@ std::vector<Flank> flanks_of(const BladeWedge& wedge) {
   for (std::size_t s = 0; s < segments; ++s) {
     const Vec3 a = wedge.edge[s], along = wedge.edge[(s + 1) % n] - a;
     const double aa = along.squaredNorm(), ab = along.dot(wedge.back);
-    flanks.push_back({a, along, along.cross(wedge.back).normalized(), aa, ab, aa * back_squared - ab * ab});
+    flanks.push_back({.start = a,
+                      .along = along,
+                      .normal = along.cross(wedge.back).normalized(),
+                      .along_squared = aa,
+                      .along_back = ab,
+                      .determinant = aa * back_squared - ab * ab});
   }
   return flanks;
 }
@@ -68,7 +73,11 @@ void BladePenalty::add(std::size_t blade, const BladeWedge& wedge, const BladeNo
     if (!box.grown(wedge.thickness + nodes.radius[i]).meets({world, world})) continue;
     const double surface = nodes.surface(i);
     // The nearest flank that the node is beside.
-    Contact found{{static_cast<std::uint32_t>(i), 1}, blade, Vec3::Zero(), nodes.mass(i) * wedge.stiffness, 0};
+    Contact found{.node = {static_cast<std::uint32_t>(i), 1},
+                  .blade = blade,
+                  .normal = Vec3::Zero(),
+                  .stiffness = nodes.mass(i) * wedge.stiffness,
+                  .offset = 0};
     double least = 0.5 * wedge.thickness + surface;
     for (const Flank& f : flanks) {
       const Vec3 r = world - f.start;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "kerf/body.h"
+#include "kerf/potential.h"
 #include "kerf/vec.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 

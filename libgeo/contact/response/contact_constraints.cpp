@@ -49,7 +49,11 @@ void add_constraint(const ContactCandidate& candidate, const SurfaceMotion& moti
   const Simplex &a = candidate.a, &b = candidate.b;
   if (separation_along(candidate.normal, a, b, motion.to) >= candidate.gap + options.reach) return;
   const ClosestPoints& closest = candidate.closest;
-  ContactConstraint c{surface_point(a, closest.weights_a), surface_point(b, closest.weights_b), candidate.normal, 0, 0};
+  ContactConstraint c{.a = surface_point(a, closest.weights_a),
+                      .b = surface_point(b, closest.weights_b),
+                      .normal = candidate.normal,
+                      .depth = 0,
+                      .approach = 0};
   c.approach = std::max(0.0, candidate.normal.dot(closest.difference) - candidate.gap) / options.dt;
   Vec3 apart = Vec3::Zero();  // at the end of the motion
   for (int k = 0; k < c.a.size; ++k) apart += c.a.weight[k] * motion.to[c.a.vertex[k]];
@@ -93,7 +97,11 @@ void add_sheet_constraints(const CoincidentVertices& coincident, const std::vect
         const Vec3 n = across.normalized();
         const double apart = n.dot(targets[a] - targets[b]);
         if (apart < -tolerance)
-          constraints.push_back({{{a}, {1}, 1}, {{b}, {1}, 1}, n, -apart, options.share * apart / options.dt});
+          constraints.push_back({.a = {{a}, {1}, 1},
+                                 .b = {{b}, {1}, 1},
+                                 .normal = n,
+                                 .depth = -apart,
+                                 .approach = options.share * apart / options.dt});
       }
 }
 
@@ -111,7 +119,7 @@ std::vector<ContactConstraint> deepest_constraints(const std::vector<ContactCons
   parallel_for(order.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto a = heaviest_node(constraints[i].a), b = heaviest_node(constraints[i].b);
-      order[i] = {std::min(a, b), std::max(a, b), constraints[i].depth, i};
+      order[i] = {.low = std::min(a, b), .high = std::max(a, b), .depth = constraints[i].depth, .index = i};
     }
   });
   std::sort(order.begin(), order.end(), [](const Entry& p, const Entry& q) {

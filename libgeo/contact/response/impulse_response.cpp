@@ -29,8 +29,12 @@ class ImpulseResponse {
                       std::vector<Vec3>& velocity) {
     const auto& [representative, coincident] = surface_.coincidence();
     const std::vector<Vec3> to = surface_targets(step_.weights, u), goal = surface_.coincidence().averaged(to);
-    const SurfaceMotion motion{
-        surface_.topology().triangles, representative, surface_.positions(), goal, gap_, 2 * gap_};
+    const SurfaceMotion motion{.triangles = surface_.topology().triangles,
+                               .representative = representative,
+                               .from = surface_.positions(),
+                               .to = goal,
+                               .gap = gap_,
+                               .reach = 2 * gap_};
     if (candidates_.empty()) candidates_ = find_contact_candidates(motion, near_);
     const auto near = deepest_constraints(contact_constraints(candidates_, motion, constraint), step_.weights,
                                           constraints_per_node_pair);

@@ -9,8 +9,8 @@
 
 #include "contact/response/rigid_shape.h"
 #include "contact/surface/surface_weights.h"
+#include "kerf/potential.h"
 #include "mechanics/terms/contact_law.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 

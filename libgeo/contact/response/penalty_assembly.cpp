@@ -13,13 +13,13 @@ namespace {
 
 // Separation that the penalty keeps beyond the gap, in mean edges. The penetration that carries a
 // load uses it up, and the surface can still follow its targets.
-constexpr double clearance = 0.02;
-// Distance below which pairs are contact candidates, in mean edges: more than the clearance, since
-// the prediction leaves out the forces of the step.
+constexpr double kept_separation = 0.02;
+// Distance below which pairs are contact candidates, in mean edges: more than kept_separation,
+// because the prediction leaves out the forces of the step.
 constexpr double candidate_distance = 0.05;
-// Share of an existing separation deficit that one step recovers. Recovering all of it at once
+// Share of an existing separation deficit that one step makes good. Making good all of it at once
 // would throw the walls apart.
-constexpr double recovery = 0.5;
+constexpr double deficit_share = 0.5;
 // Stiffness over that of the material between two nodes, E / (ρ h²) per mass. A contact is deep by
 // about half of what the material between two nodes is compressed.
 constexpr double relative_stiffness = 2;
@@ -39,12 +39,17 @@ class PenaltyAssembly {
     const auto& [representative, coincident] = surface_.coincidence();
     const std::vector<Vec3> to = surface_.coincidence().averaged(in_.free_targets);
     const double reach = candidate_distance * edge_;
-    const SurfaceMotion motion{surface_.topology().triangles, representative, surface_.positions(), to, in_.gap, reach};
+    const SurfaceMotion motion{.triangles = surface_.topology().triangles,
+                               .representative = representative,
+                               .from = surface_.positions(),
+                               .to = to,
+                               .gap = in_.gap,
+                               .reach = reach};
     const auto candidates =
         find_contact_candidates(motion, near, {in_.weights.heaviest(), 2 * constraints_per_node_pair});
     add(deepest_constraints(contact_constraints(candidates, motion, {in_.dt, 0, reach}), in_.weights,
                             constraints_per_node_pair),
-        coincident, in_.mean_targets, in_.gap + clearance * edge_);
+        coincident, in_.mean_targets, in_.gap + kept_separation * edge_);
   }
 
   // Contacts between the two sides of a closed sheet: coincident vertices.
@@ -73,8 +78,11 @@ class PenaltyAssembly {
         // Without the nodes that both points share: these would make it too stiff near a crack
         // front.
         const bool moves = stencils[i].inverse_mass_a + stencils[i].inverse_mass_b > 0;
-        all[i] = {moves ? &stencils[i] : nullptr, c.normal, deficit > 0 ? recovery * deficit : deficit,
-                  moves ? stiffness(c, stencils[i]) : 0, weighted_sum(stencils[i].entries, in_.displacement)};
+        all[i] = {.stencil = moves ? &stencils[i] : nullptr,
+                  .normal = c.normal,
+                  .depth = deficit > 0 ? deficit_share * deficit : deficit,
+                  .stiffness = moves ? stiffness(c, stencils[i]) : 0,
+                  .start = weighted_sum(stencils[i].entries, in_.displacement)};
       }
     });
     std::erase_if(all, [](const auto& addition) { return !addition.stencil; });

@@ -14,7 +14,13 @@ void SelfContactPenalty::add(std::span<const Addition> contacts) {
   std::size_t entries = entries_.size();
   for (const Addition& c : contacts) {
     const std::size_t first = std::exchange(entries, entries + c.stencil->entries.size());
-    contacts_.push_back({first, entries, c.normal, c.depth, c.stiffness, 0, c.start});
+    contacts_.push_back({.first = first,
+                         .end = entries,
+                         .normal = c.normal,
+                         .depth = c.depth,
+                         .stiffness = c.stiffness,
+                         .activation_distance = 0,
+                         .start = c.start});
   }
   entries_.resize(entries);
   parallel_for(contacts.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contact/response/relative_stencil.h"
+#include "kerf/potential.h"
 #include "mechanics/terms/contact_law.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 
@@ -39,7 +39,7 @@ class SelfContactPenalty : public Potential {
   }
   /// The same, given the relative displacement at the beginning.
   void add(const RelativeStencil& stencil, const Vec3& normal, double depth, double stiffness, const Vec3& start) {
-    const Addition one{&stencil, normal, depth, stiffness, start};
+    const Addition one{.stencil = &stencil, .normal = normal, .depth = depth, .stiffness = stiffness, .start = start};
     add({&one, 1});
   }
   /// A contact as the arguments of add() describe it.

@@ -49,8 +49,10 @@ class SheetOpener {
       if (inward_[v].isZero(0)) inward_[v] = normals_[v];
     Representatives closed = opening;
     // Smaller moves for vertices whose triangles would cross: five lengths, each along two normals.
-    constexpr int most_trials = 10;
-    for (int trial = 0; !closed.empty() && trial < most_trials; ++trial) closed = open_at_once(closed, trial);
+    // Each length is a quarter of the one before, so that the last is gap / 512: what does not open
+    // by that has no space, and stays closed until the next step.
+    constexpr int max_trials = 10;
+    for (int trial = 0; !closed.empty() && trial < max_trials; ++trial) closed = open_at_once(closed, trial);
     return open_one_by_one(closed);
   }
 
@@ -117,13 +119,13 @@ class SheetOpener {
   // Opens vertices one after another, since others may have been in the way. Tries moves of both
   // copies and of all but the first. Returns the number of vertices that stay closed.
   std::size_t open_one_by_one(Representatives closed) {
-    constexpr int most_trials = 20;  // five lengths, two normals, both copies or all but the first
+    constexpr int max_trials = 20;  // five lengths, two normals, both copies or all but the first
     auto representative = coincident_representatives(surface_.site, positions_);
     auto pairs_of = pairs_at(closed);
     std::size_t next = 0;
     return std::erase_if(closed, [&](auto v) {
       auto& pairs = pairs_of[next++];
-      for (int trial = 0; trial < most_trials; ++trial) {
+      for (int trial = 0; trial < max_trials; ++trial) {
         const double step = std::ldexp(0.5 * gap_, -2 * (trial / 4));
         for (const auto c : coincident_[v]) {
           const std::vector<Vec3>& along = trial % 4 < 2 ? inward_ : normals_;

@@ -115,7 +115,7 @@ std::vector<std::uint32_t> SurfaceWeights::update(const Body& body, const Solid&
 }
 
 bool SurfaceWeights::set_rotations(const Solid& solid) {
-  const NodalGradientOperator& mls = solid.discretisation().mls;
+  const NodalGradientOperator& mls = SolidDiscretisation::of(solid).mls;
   rotated_.clear();
   if (!mls.has_rotations()) return false;
   rotated_.resize(arms_.size(), Vec3::Zero());
@@ -141,7 +141,7 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
   area_.resize(stencils_.size(), 0);
   arms_.resize(stencils_.size());
   rest_.resize(stencils_.size(), none);
-  const NodalGradientOperator& mls = solid.discretisation().mls;
+  const NodalGradientOperator& mls = SolidDiscretisation::of(solid).mls;
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
     thread_local StencilSums sums;  // as large as all nodes, for a range of few vertices

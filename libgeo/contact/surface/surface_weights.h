@@ -8,8 +8,8 @@
 
 #include "geometry/resolution.h"
 #include "kerf/body.h"
+#include "kerf/potential.h"
 #include "kerf/solid.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 

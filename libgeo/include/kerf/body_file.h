@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <ostream>
@@ -18,8 +19,7 @@
 
 namespace geo {
 
-class KerfSink;
-struct KerfArray;
+class UpdatedFile;  // private: an open file, and what is appended to it
 
 /// Newest version of the format that this library reads and writes.
 constexpr std::uint32_t kerf_format_version = 2;
@@ -68,9 +68,11 @@ class KerfFile {
   std::vector<T> read(const std::string& section, std::uint64_t columns = 1) const;
   /// The text of a json section. Throws as read().
   std::string text(const std::string& section) const;
-  /// Passes the bytes of a section on in blocks, in order. Throws InputError at the end where they
-  /// do not match their hash.
-  void stream(const std::string& section, KerfSink& sink) const;
+  /// Passes the bytes of a section on in blocks, in order.
+  /// \param take  receives the next block, which is valid during the call
+  /// \throws InputError at the end where the bytes do not match their hash
+  /// \throws std::out_of_range for an unknown section
+  void stream(const std::string& section, const std::function<void(std::span<const std::byte>)>& take) const;
 
   /// Throws InputError: name, `what`, and that the file is damaged.
   [[noreturn]] void fail(const std::string& what) const;
@@ -96,18 +98,12 @@ class KerfUpdate {
   /// The file before the update.
   const KerfFile& file() const;
 
-  /// Makes `arrays` the state of the file. Changes are appended: an interrupted write leaves the
-  /// state before. The file is written anew if it would become more than twice as long as a new
-  /// one, loses a section, or has an older version. Call at most once. Returns the number of bytes
-  /// written. Memory: twice the largest array. Throws OutputError; the state before stays.
-  std::uint64_t commit(const std::vector<KerfArray>& arrays);
-
   /// Rewrites the file in a single segment, with the same state. Throws OutputError.
   void compact();
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  friend class UpdatedFile;  // it alone reaches itself, for the library's own code
+  std::unique_ptr<UpdatedFile> file_;
 };
 
 /// True where both paths name the same regular file.
@@ -126,8 +122,12 @@ Body parse_body(const std::string& bytes, const std::string& name);
 /// Writes a body as a new file. The same body gives the same bytes.
 void write_body(std::ostream& out, const Body& body);
 
-/// Updates a file to a later state of its body, by appending the changes. Returns the number of
-/// bytes written. Throws as KerfUpdate::commit().
+/// Updates a file to a later state of its body. Changes are appended, so that an interrupted write
+/// leaves the state before. The file is written anew if it would become more than twice as long as
+/// a new one, loses a section, or has an older version. Memory: twice the largest section.
+/// \param file  to be used for one update only
+/// \return the number of bytes written
+/// \throws OutputError where the file cannot be written; the state before stays
 std::uint64_t write_body(KerfUpdate& file, const Body& body);
 
 // ---- Checkpoints: the body of a run and its state in one `.kerf` file, replaced by one rename.

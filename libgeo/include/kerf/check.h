@@ -1,5 +1,5 @@
-// Validity of meshes and crack complexes, and repair of meshes. Geometric tests are exact; reports
-// name the first offending ids.
+// Validity of meshes and crack complexes. Geometric tests are exact; reports name the first
+// offending ids.
 #pragma once
 
 #include <array>
@@ -44,6 +44,10 @@ struct Shell {
 /// beside each other.
 std::vector<Shell> find_shells(const TriangleMesh& mesh);
 
+/// Whether a check looks for faces that cross or overlap, which costs more than all else.
+enum class SelfIntersections : std::uint8_t { ignore, find };
+
+/// The result of check_surface() and check_complex().
 struct SurfaceReport {
   /// closed: no edge with one triangle; manifold: none with more than two, and all triangles at a
   /// vertex are joined across edges there; oriented: the two triangles of each edge run along it in
@@ -58,15 +62,19 @@ struct SurfaceReport {
 };
 
 /// Checks a mesh. A two-sided surface is checked as a crack complex, each crack face once, so that
-/// coincident sheets are no intersection. With `self_intersections`, and where there are none, also
-/// the orientation of each shell: outwards, or inwards in the material of another one.
-SurfaceReport check_surface(const TriangleMesh& mesh, bool self_intersections);
+/// coincident sheets are no intersection.
+/// \param crossings  find: also self-intersections and, where there are none, the orientation of
+///   each shell: outwards, or inwards in the material of another one
+/// \return a report that names the first problem; nothing is thrown
+SurfaceReport check_surface(const TriangleMesh& mesh, SelfIntersections crossings);
 
 /// Checks K: radial cycles list their edges' faces in geometric order; both sides of each wedge are
 /// material, or both air; the derived surface is closed, oriented and manifold; no face is
-/// degenerate. With `self_intersections`, also that no two faces cross or overlap, and that the
-/// shells of the skin are oriented as check_surface() says. Exact.
-SurfaceReport check_complex(const Complex& complex, bool self_intersections);
+/// degenerate. Exact.
+/// \param crossings  find: also that no two faces cross or overlap, and that the shells of the skin
+///   are oriented as check_surface() says
+/// \return a report that names the first problem; nothing is thrown
+SurfaceReport check_complex(const Complex& complex, SelfIntersections crossings);
 
 /// The structural part of check_complex() for some faces (dead ones are skipped) and the faces that
 /// share a corner with them. A step with these new faces can break nothing else. Cost follows the
@@ -78,9 +86,9 @@ SurfaceReport check_near(const Complex& complex, std::span<const FaceId> faces);
 std::vector<std::pair<FaceId, FaceId>> self_intersections(const Complex& complex,
                                                           const std::vector<FaceId>* only = nullptr);
 
-/// Throws InputError unless `mesh` is a valid model: closed, manifold, each shell oriented outwards
-/// or, as a cavity, inwards, no degenerate or self-intersecting triangles, finite coordinates. The
-/// message names the first offending indices and the remedy.
+/// Checks that `mesh` is a valid model: closed, manifold, each shell oriented outwards or, as a
+/// cavity, inwards, no degenerate or self-intersecting triangles, finite coordinates.
+/// \throws InputError where it is not; the message names the first offending indices and the remedy
 void require_solid(const TriangleMesh& mesh);
 
 // ---- Predicates
@@ -93,78 +101,5 @@ bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3
 /// True when the half-planes from line ab through the points are in radial order: counter-clockwise
 /// about a→b, each strictly after the one before it. Exact.
 bool in_radial_order(const Vec3& a, const Vec3& b, std::span<const Vec3> through);
-
-// ---- Repair: turns a surface that is nearly solid into a solid.
-
-/// The treatment of shells that lie in the material of others.
-enum class InnerShells {
-  by_orientation,  ///< one oriented against its surroundings is a cavity, one oriented like them is left out
-  cavities,        ///< each is a cavity, and a shell in a cavity is a core
-  filled,          ///< all are left out
-};
-
-/// Options of repair().
-struct RepairOptions {
-  double weld_distance = 0;  ///< open vertices up to this far apart are welded, model units
-  bool smooth_fill = false;  ///< holes are closed by fair patches where these cross nothing
-  InnerShells inner = InnerShells::by_orientation;
-};
-
-/// The changes that repair() made, in its order.
-struct RepairStats {
-  std::size_t welded_vertices = 0;    ///< vertices merged into others
-  std::size_t dropped_triangles = 0;  ///< degenerate (a vertex twice) or duplicate
-  std::size_t flipped_triangles = 0;  ///< orientation reversed in the result
-  std::size_t filled_holes = 0;
-  std::size_t added_triangles = 0;  ///< in holes
-  std::size_t smooth_fills = 0;     ///< holes that are filled by fair patches
-  std::size_t inverted_shells = 0;  ///< shells whose orientation was reversed, those of hollowed_shells not counted
-  std::size_t dropped_shells = 0;   ///< shells in material, oriented like it, that were left out
-  std::size_t hollowed_shells = 0;  ///< shells in material, oriented like it, that became cavities or cores
-  std::size_t filled_shells = 0;    ///< further inner shells that InnerShells::filled left out
-  /// True when the mesh is as it was.
-  bool nothing() const {
-    return welded_vertices + dropped_triangles + flipped_triangles + filled_holes + dropped_shells + filled_shells == 0;
-  }
-};
-
-/// Repairs the topology of a plain mesh (no sites), in this order: welds seams, open ones also
-/// where their vertices are up to weld_distance apart (model units); drops triangles that bound
-/// nothing; orients neighbours alike; fills each hole by triangles between its corners, or, with
-/// smooth_fill and where nothing crosses, by a fair patch that continues the surface around it;
-/// turns shells outwards, cavities inwards, and treats shells in material as options.inner says;
-/// drops vertices without triangles.
-///
-/// Which inner shells are cavities follows from the winding number. Relative to the orientation of
-/// the outermost shell, an inner one adds 1 or takes 1 away, and material is where the sum is above
-/// 0. So repair() and self_union() decide alike.
-///
-/// Attributes stay with their triangles; a filled hole has those of its rim. Intersecting triangles
-/// and edges of more than two triangles remain: check_surface() finds them.
-RepairStats repair(TriangleMesh& mesh, const RepairOptions& options = {});
-
-// ---- Open sheets: parts of a surface that bound nothing
-
-/// The meaning of parts with open edges.
-enum class OpenParts {
-  by_area,  ///< open sheets where closing their holes takes half their area, or where a rim is no loop
-  closed,   ///< surfaces with holes
-  sheets,   ///< open sheets
-};
-
-/// The changes that take_sheets() made.
-struct OpenSheetStats {
-  std::size_t welded_vertices = 0;    ///< vertices merged into others
-  std::size_t dropped_triangles = 0;  ///< degenerate, duplicate, or walls between two parts
-  std::size_t sheets = 0;             ///< parts taken out
-};
-
-/// Takes the open sheets out of a plain mesh and returns them, on the same vertices. Before, it
-/// welds seams as repair() does. Where two triangles coincide and face each other, as in a
-/// double-sided card, one stays. Parts are joined across edges of two triangles. A part of a sphere
-/// is taken for a sheet where it is smaller than a half: closing it takes more than half of its
-/// area.
-TriangleMesh take_sheets(TriangleMesh& mesh, double weld_distance = 0, OpenParts open = OpenParts::by_area,
-                         OpenSheetStats* stats = nullptr);
 
 }  // namespace geo

@@ -11,12 +11,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "kerf/check.h"
 #include "kerf/complex.h"
 #include "kerf/mesh.h"
 #include "kerf/progress.h"
@@ -40,10 +38,13 @@ struct Front {
 
 /// Resamples `next` to as many points as `previous`: unchanged where the counts agree, else at the
 /// fractions of arc length of the points of `previous`.
+/// \param closed  whether the last point is joined to the first
 std::vector<Vec3> resample_front(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, bool closed);
 
 /// The number of substeps, at least 1, that keeps each front point's motion per substep at or below
-/// `limit` (§ 5.1; model units). Throws InputError unless `limit` is positive.
+/// a limit (§ 5.1).
+/// \param limit  model units
+/// \throws InputError unless `limit` is positive
 int substep_count(const std::vector<Vec3>& previous, const std::vector<Vec3>& next, double limit);
 
 // ---- Fronts in a crack complex
@@ -117,54 +118,36 @@ struct CrackStats {
   double seconds() const;
 };
 
-/// The front before its first step: F_0, without contacts. Throws InputError for fewer than two
-/// points or coordinates that are not finite.
+/// The front before its first step: F_0, without contacts.
+/// \param points  material coordinates, two at least
+/// \param closed  whether the last point is joined to the first
+/// \param crack  number of the crack that the front will leave, at least 1; a number in use
+///   continues that crack
+/// \throws InputError for fewer than two points or coordinates that are not finite
 FrontState begin_front(std::span<const Vec3> points, bool closed, std::int32_t crack);
 
-/// One step of § 5.2: sweeps the front to `next` (as many points as the front has), inserts the
-/// strip into K and returns the changes. Initiation, branching, merging and termination of cracks
-/// need no flags: they follow from the intersection. Throws InputError for points that do not fit
-/// the front, GeometryError when no attempt passes the guard; `complex` and `front` are then
-/// unchanged. `stats`, where given, is added to.
+/// One step of § 5.2: sweeps the front to `next` and inserts the strip into K. Initiation,
+/// branching, merging and termination of cracks need no flags: they follow from the intersection.
+/// \param next  material coordinates; as many points as the front has
+/// \param options  tolerances, relative to the diagonal of Complex::extent()
+/// \param stats  where given, is added to
+/// \return the changes of K; cost follows the faces that the strip meets
+/// \throws InputError for points that do not fit the front
+/// \throws GeometryError when no attempt passes the guard; `complex` and `front` are then unchanged
 CrackDelta advance(Complex& complex, FrontState& front, std::span<const Vec3> next, const CrackOptions& options = {},
                    CrackStats* stats = nullptr);
 
-/// Inserts the parts of `sheet` in the material as one crack, in one step. Any triangles will do,
-/// connected or not, crossing each other or not; patch and site are ignored. Throws InputError for
-/// a sheet with indices out of range or coordinates that are not finite, GeometryError when no
-/// attempt passes the guard; `complex` is then unchanged.
+/// Inserts the parts of a sheet in the material as one crack, in one step.
+/// \param sheet  any triangles, connected or not, crossing each other or not; patch and site are
+///   ignored; material coordinates
+/// \param crack  number of the crack, at least 1
+/// \param options  tolerances, relative to the diagonal of Complex::extent()
+/// \param stats  where given, is added to
+/// \return the changes of K
+/// \throws InputError for a sheet with indices out of range or coordinates that are not finite
+/// \throws GeometryError when no attempt passes the guard; `complex` is then unchanged
 CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack,
                         const CrackOptions& options = {}, CrackStats* stats = nullptr);
-
-// ---- Solids from surfaces that cross themselves
-
-/// Statistics of self_union().
-struct SelfUnionStats {
-  std::size_t cells = 0;          ///< regions that the triangles enclose
-  std::size_t removed_faces = 0;  ///< faces with material, or air, on both sides
-};
-
-/// The boundary of the points where the generalized winding number of `mesh` exceeds a half
-/// (Jacobson, Kavan and Sorkine-Hornung 2013): one solid of parts that overlap, touch, cross
-/// themselves or have walls inside. Any triangles will do, but open parts enclose nothing: fill
-/// their holes first, see repair(). Triangles that cross nothing keep their vertices bit for bit;
-/// attributes are interpolated over the triangles that contain the result's. Parts of the result
-/// that touch in vertices or edges alone are moved apart there, by at most 2⁻¹² of an edge.
-///
-/// Throws InputError as insert_sheet() and for a mesh without triangles, GeometryError as
-/// insert_sheet(), where nothing is enclosed, and where touching parts cannot be moved apart.
-TriangleMesh self_union(const TriangleMesh& mesh, const CrackOptions& options = {}, SelfUnionStats* stats = nullptr);
-
-/// The changes that repaired_solid() made.
-struct SolidRepairStats {
-  RepairStats repair;
-  std::optional<SelfUnionStats> united;  ///< where triangles crossed, or edges had more than two
-};
-
-/// A valid model of a plain mesh (no sites): repair() with these options, then, where the result
-/// is no solid, self_union(). Throws InputError where triangles bound nothing, else as
-/// self_union().
-TriangleMesh repaired_solid(TriangleMesh mesh, const RepairOptions& options = {}, SolidRepairStats* stats = nullptr);
 
 // ---- Local edits of a crack complex (§ 5.2, § 8's first limitation). Each is guarded: K never
 // intersects itself and S_A stays closed. Vertices stay on all that they lie on: the skin as given,

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
@@ -151,28 +150,6 @@ struct VolumeOptions {
 /// units. Throws InputError where the file is no OpenVDB file, has no floating-point grid, several
 /// without a name given, or no closed surface at the level.
 TriangleMesh read_volume(const std::string& path, const VolumeOptions& options = {});
-
-/// A new surface around closed parts, which may intersect themselves and each other, and open
-/// sheets, as take_sheets() tells them apart. Around closed parts it is the zero level of their
-/// distance field, with voxels of edge `voxel`, which also rounds edges by that length. A sheet
-/// becomes a plate of the thickness `voxel`. So does a closed part whose mean thickness is less, in
-/// addition to its own. `source` is the nearest triangle of `mesh`, which also gives the
-/// attributes. Throws InputError where nothing has an extent, Interrupted.
-TriangleMesh wrapped(const TriangleMesh& mesh, double voxel, OpenParts open = OpenParts::by_area,
-                     const Progress& progress = {});
-
-/// The changes that wrapped_solid() made.
-struct WrapStats {
-  OpenSheetStats sheets;
-  RepairStats repair;  ///< of the other parts
-};
-
-/// A valid model around a plain mesh: take_sheets(), then repair() of the other parts, then
-/// wrapped(). Throws InputError where no triangle bounds anything, and where the new surface is no
-/// valid model, Interrupted.
-TriangleMesh wrapped_solid(TriangleMesh mesh, double voxel, const RepairOptions& options = {},
-                           OpenParts open = OpenParts::by_area, WrapStats* stats = nullptr,
-                           const Progress& progress = {});
 
 /// Writes a mesh as a level set with voxels of edge `voxel`; with `fog` as a density from 0 outside
 /// to 1 inside. For samples and tests. Throws OutputError.

@@ -15,7 +15,7 @@
 
 namespace geo {
 
-class GraphStorage;  // graph/graph_storage.h: adjacency rows and guides, for the library's own code
+class GraphStorage;  // private: adjacency rows and guides
 
 /// One support radius in units of warped length (§ 6.4).
 constexpr std::uint32_t unit_radius = 1u << 24;
@@ -113,12 +113,8 @@ class VisibilityGraph {
   /// Is this the id of a guide?
   static constexpr bool is_guide(std::uint32_t id) { return id >= first_guide; }
 
-  /// Rows and guides as the library stores them; for the library's own code.
-  GraphStorage& storage() { return *storage_; }
-  /// As above, read-only.
-  const GraphStorage& storage() const { return *storage_; }
-
  private:
+  friend class GraphStorage;  // it alone reaches itself, for the library's own code
   Indirect<GraphStorage> storage_;
 };
 
@@ -223,7 +219,7 @@ class VisibilityGraph::Neighbors {
       const float distance =
           hidden ? row_.paths[path_]
                  : static_cast<float>(std::sqrt(squared_distance(nodes_->position[i_], nodes_->position[to])));
-      return {NodeId(to), AdjacencyRow::bound(row_.bits[at_]), distance, hidden};
+      return {.to = NodeId(to), .warped = AdjacencyRow::bound(row_.bits[at_]), .distance = distance, .hidden = hidden};
     }
     /// To the next neighbour.
     Iterator& operator++() {

@@ -105,19 +105,22 @@ void transfer_attributes(const TriangleMesh& original, TriangleMesh& derived);
 
 // ---- Refinement
 
-/// A plain mesh (no sites) with edges of at most `longest`, model units. Longer edges are bisected
-/// repeatedly, for both triangles of each. The shape stays to rounding, vertices keep their
-/// indices, triangles come in the order of those that contain them; attributes are interpolated. An
-/// edge whose midpoint rounds to one of its ends stays. Throws InputError where more than 20
-/// million triangles would result.
+/// A plain mesh with edges of at most `longest`. Longer edges are bisected repeatedly, for both
+/// triangles of each. The shape stays to rounding, vertices keep their indices, triangles come in
+/// the order of those that contain them; attributes are interpolated. An edge whose midpoint rounds
+/// to one of its ends stays.
+/// \param mesh  a plain mesh, without sites
+/// \param longest  model units
+/// \throws InputError where more than 20 million triangles would result
 TriangleMesh refined(const TriangleMesh& mesh, double longest);
 
 // ---- Procedural models at any resolution: closed, oriented outwards, free of self-intersection.
 // Samples and tests use them.
 
-/// A geodesic sphere of 20·frequency² triangles whose point in unit direction d is radius(d)·d;
-/// frequency ≥ 1. Star-shaped, hence free of self-intersection, for any positive continuous radius.
-/// Throws InputError for frequency < 1.
+/// A geodesic sphere of 20·frequency² triangles whose point in unit direction d is radius(d)·d.
+/// Star-shaped, hence free of self-intersection, for any positive continuous radius.
+/// \param frequency  at least 1
+/// \throws InputError for a lower frequency
 TriangleMesh make_star(int frequency, const std::function<double(const Vec3&)>& radius);
 
 /// A unit sphere of 20·frequency² triangles.
@@ -133,12 +136,16 @@ TriangleMesh make_apple(int frequency);
 TriangleMesh make_polyp(int frequency);
 
 /// An axis-aligned block [0, size] with faces divided so that no edge along an axis is longer than
-/// `edge`. Throws InputError unless size and edge are positive.
+/// `edge`.
+/// \param size  of the block, model units
+/// \param edge  model units
+/// \throws InputError unless size and edge are positive
 TriangleMesh make_block(const Vec3& size, double edge);
 
-/// A capital letter A–Z of height 1, drawn with a pen of width 0.2 and extruded to `depth` along z.
-/// `resolution` is the number of cells per unit of height, at least 12. Throws InputError for a
-/// character that is not in the alphabet.
+/// A capital letter A–Z of height 1, drawn with a pen of width 0.2 and extruded along z.
+/// \param depth  of the extrusion, model units
+/// \param resolution  number of cells per unit of height, at least 12
+/// \throws InputError for a character that is not in the alphabet
 TriangleMesh make_letter(char letter, double depth, int resolution);
 
 }  // namespace geo

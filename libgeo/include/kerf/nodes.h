@@ -59,10 +59,13 @@ struct SampleReport {
   double support_seconds = 0;         ///< support radii
 };
 
-/// Samples a closed surface (as require_solid() in kerf/check.h checks) with nodes inside it.
-/// Inside is exact (ray parity), also in slits and walls much thinner than a cell. Deterministic
-/// for a seed, whatever the number of threads. Throws InputError for options out of range, and for
-/// a spacing so large that no node fits inside.
+/// Samples a closed surface with nodes inside it. Inside is exact (ray parity), also in slits and
+/// walls much thinner than a cell. Deterministic for a seed, whatever the number of threads.
+/// \param solid  a valid model, as require_solid() in kerf/check.h checks; it is not checked again
+/// \param options  lengths are in model units
+/// \param report  where given, receives what the sampling found
+/// \throws InputError for options out of range, and for a spacing so large that no node fits inside
+/// \throws Interrupted where `progress` asks for it
 NodeSet sample_nodes(const TriangleMesh& solid, const SampleOptions& options, const Progress& progress = {},
                      SampleReport* report = nullptr);
 
@@ -75,9 +78,10 @@ struct ThinMaterial {
   double enough = 0;       ///< the spacing with which walls of that thickness have enough nodes
 };
 
-/// Finds the walls of a closed surface with fewer than `across` node spacings between their two
-/// sides. With less than two, a wall cannot bend: its strain varies across it, and one layer of
-/// nodes has the mean of both sides alone. Looks at 4,096 triangles at most, evenly among all.
+/// Finds the walls of a closed surface with few node spacings between their two sides. With less
+/// than two, a wall cannot bend: its strain varies across it, and one layer of nodes has the mean
+/// of both sides alone. Looks at 4,096 triangles at most, evenly among all.
+/// \param across  walls with fewer spacings than this are thin
 ThinMaterial find_thin_material(const TriangleMesh& solid, const NodeSet& nodes, double across = 2);
 
 }  // namespace geo

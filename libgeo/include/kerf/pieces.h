@@ -43,9 +43,11 @@ struct Bond {
   double section = 0;
 };
 
-/// The bonds of a cut body, ordered by (a, b). `moved`, where given, holds the deformed position of
-/// each vertex of S_A; then normals and centroids are deformed ones, half way between the two
-/// sides, and areas and sections still undeformed ones.
+/// The bonds of a cut body, ordered by (a, b).
+/// \param pieces  of this complex, as find_pieces() gives them
+/// \param moved  where given, the deformed position of each vertex of S_A; then normals and
+///   centroids are deformed ones, half way between the two sides, and areas and sections still
+///   undeformed ones
 std::vector<Bond> find_bonds(const Complex& complex, const Pieces& pieces, std::span<const Vec3> moved = {});
 
 /// A piece as a mesh for export.
@@ -55,12 +57,14 @@ struct Chunk {
   Vec3 centroid = Vec3::Zero();  ///< of the material
 };
 
-/// The pieces in descending order of volume, with the attributes of `original`, the surface that
-/// `complex` was made from (empty: no attributes). Each triangle has a group: inner ones "crack",
-/// and all others "skin" where the original has no groups. Inner triangles without texture
-/// coordinates get them by projection along the mean plane of their bond, one unit of uv for `tile`
-/// model units; skin without has (0, 0). `moved`, where given, holds the deformed position of each
-/// vertex of S_A; then volumes and centroids are deformed ones.
+/// The pieces in descending order of volume. Each triangle has a group: inner ones "crack", and all
+/// others "skin" where the original has no groups. Inner triangles without texture coordinates get
+/// them by projection along the mean plane of their bond; skin without has (0, 0).
+/// \param pieces  of this complex, as find_pieces() gives them
+/// \param original  the surface that `complex` was made from, for its attributes; empty: none
+/// \param tile  model units of one unit of uv on inner triangles
+/// \param moved  where given, the deformed position of each vertex of S_A; then volumes and
+///   centroids are deformed ones
 std::vector<Chunk> make_chunks(const Complex& complex, const Pieces& pieces, const TriangleMesh& original, double tile,
                                std::span<const Vec3> moved = {});
 
@@ -75,11 +79,14 @@ struct MassProperties {
 /// Integrals over the material, exact to rounding: sums over tetrahedra from the middle of the box.
 MassProperties mass_properties(const TriangleMesh& mesh);
 
-/// Approximate convex decomposition of a closed mesh: at most `max_hulls` convex hulls of at most
-/// `max_vertices` vertices each. Planes across principal axes divide the mesh greedily; each
-/// division saves the most hull volume (after Mamou and Ghorbel 2009). It ends when the saving is
-/// at most a hundredth of the whole hull's volume. Hulls with no limit on vertices cover the mesh.
-/// Empty for a planar mesh. Throws Interrupted.
+/// Approximate convex decomposition of a closed mesh. Planes across principal axes divide it
+/// greedily; each division saves the most hull volume (after Mamou and Ghorbel 2009). It ends when
+/// the saving is at most a hundredth of the whole hull's volume. Hulls with no limit on vertices
+/// cover the mesh.
+/// \param max_hulls  limit on their number
+/// \param max_vertices  limit on the vertices of each
+/// \return the hulls; empty for a planar mesh
+/// \throws Interrupted where `progress` asks for it
 std::vector<TriangleMesh> convex_decomposition(const TriangleMesh& mesh, std::size_t max_hulls,
                                                std::size_t max_vertices, const Progress& progress = {});
 

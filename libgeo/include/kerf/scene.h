@@ -134,7 +134,7 @@ struct Blade {
   Motion motion = {};        ///< at least two keys; the blade exists from the first to the last
   Vec3 back = Vec3::Zero();  ///< vector from the edge to the back of the blade, in its coordinates
   double thickness = 0;      ///< of the wedge at the back, model units; 0: no wedge
-  double stiffness = 1e4;    ///< penalty of the wedge: acceleration per depth, 1/s²
+  double stiffness = 1e4;    ///< of the wedge: acceleration per depth, 1/s²
   double limit = 1;          ///< largest motion of an edge point in one cut, in node spacings (§ 5.1)
 
   /// True while the blade exists.
@@ -151,7 +151,7 @@ struct SceneObstacle {
   double scale = 1;             ///< of the mesh, applied before the pose
   Pose place;                   ///< at rest
   Motion motion;                ///< applied to the placed obstacle; no keys: at rest
-  double stiffness = 0;         ///< penalty: acceleration per depth, 1/s²; 0: as Scene::ground_stiffness
+  double stiffness = 0;         ///< of the contact: acceleration per depth, 1/s²; 0: as Scene::ground_stiffness
   double friction = 0.5;        ///< Coulomb's coefficient
   std::string file = {};        ///< path that the mesh was read from; empty: from none
 
@@ -186,7 +186,7 @@ struct Scene {
   std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides
   bool ground = false;               ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();
-  /// Penalty: acceleration per depth, 1/s². 0: a pressure per depth of 1000 ρ |g| + 2 E / h. Then a
+  /// Acceleration per depth, 1/s². 0: a pressure per depth of 1000 ρ |g| + 2 E / h. Then a
   /// body of height H stands at most H / 1000 deep, and at most as deep as half of the compression
   /// between two nodes, h apart.
   double ground_stiffness = 0;

@@ -68,10 +68,13 @@ struct Score {
 };
 
 /// Tries patterns, coarser, finer and of other seeds, until one divides the model into as many
-/// pieces as wanted; else returns the nearest one. `cut`, where given, receives the model cut along
-/// the sheet, as insert_sheet() with the next crack number cuts it. Throws InputError for options
-/// out of range, GeometryError where no pattern can be inserted, Interrupted when `progress` stops
-/// it.
+/// pieces as wanted; else returns the nearest one.
+/// \param options  lengths are relative to the diagonal of Complex::extent()
+/// \param cut  where given, receives the model cut along the sheet, as insert_sheet() with the next
+///   crack number cuts it
+/// \throws InputError for options out of range
+/// \throws GeometryError where no pattern can be inserted
+/// \throws Interrupted where `progress` asks for it
 Score make_score(const Complex& model, const ScoreOptions& options, const Progress& progress = {},
                  Complex* cut = nullptr);
 

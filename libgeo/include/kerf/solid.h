@@ -14,13 +14,13 @@
 #include "kerf/indirect.h"
 #include "kerf/material.h"
 #include "kerf/nodes.h"
+#include "kerf/potential.h"
 #include "kerf/vec.h"
 
 namespace geo {
 
-class Potential;
-struct SolidDiscretisation;
-struct SolverCache;
+struct SolidDiscretisation;  // private: nodes, material points, subdomains
+struct SolverCache;          // private: inverses of the last step
 
 // ---- The motion, and what acts on it from outside
 
@@ -39,7 +39,7 @@ struct Environment {
   Vec3 gravity = {0, 0, -9.81};     ///< acceleration, m/s²
   std::vector<std::uint8_t> fixed;  ///< per node: 1 clamps it; empty: no node is clamped
   std::vector<Vec3> load;           ///< per node: a force, N; empty: none
-  std::vector<Potential*> contact;  ///< contact potentials, not owned; empty: no contact
+  std::vector<Potential*> contact;  ///< further energies, such as contact, springs, wind; not owned
 };
 
 // ---- The solid
@@ -121,20 +121,25 @@ class Solid {
   /// ∂²U/∂u² p with the implicit step's stiffness at u: in single precision, negative eigenvalues
   /// left out. N per node.
   std::vector<Vec3> stiffness_product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) const;
-  /// Cauchy stress, Pa, about material position x: the mean over material points within `radius`,
-  /// weighted by volume and the kernel. `sees`, where given, accepts the positions of the points
-  /// that count. Zero where there are none.
+  /// The Cauchy stress about a place: the mean over material points near it, weighted by volume and
+  /// the kernel.
+  /// \param x  material coordinates
+  /// \param radius  of the material points that count, model units
+  /// \param sees  where given, accepts the positions of the points that count
+  /// \return Pa; zero where no point counts
   Mat3 stress_at(const State& state, const Vec3& x, double radius,
                  const std::function<bool(const Vec3&)>& sees = {}) const;
 
-  /// Advances `state` by dt with backward Euler: Newton's method on the incremental potential,
-  /// conjugate gradients with a two-level preconditioner, line search. A step that does not
-  /// converge is halved, recursively. `accuracy`: of displacements, relative to the spacing of
-  /// nodes. Not const: the preconditioner's inverses are kept for the next step, which changes its
-  /// time and not its result.
+  /// Advances a state with backward Euler: Newton's method on the incremental potential, conjugate
+  /// gradients with a two-level preconditioner, line search. A step that does not converge is
+  /// halved, recursively. Not const: the preconditioner's inverses are kept for the next step,
+  /// which changes its time and not its result.
+  /// \param dt  s
+  /// \param accuracy  of displacements, relative to the spacing of nodes
   StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3);
-  /// Advances `state` by dt with symplectic Euler, in as many substeps as the fastest wave
-  /// requires; twice as many where energy would rise.
+  /// Advances a state with symplectic Euler, in as many substeps as the fastest wave requires;
+  /// twice as many where energy would rise.
+  /// \param dt  s
   StepReport step_explicit(State& state, double dt, const Environment& environment);
   /// Takes over State::rotation of a state that this solid has not computed, as one read from a
   /// file. Steps and updates do it themselves.
@@ -147,10 +152,8 @@ class Solid {
   /// Kinetic energy, J.
   double kinetic_energy(const State& state) const;
 
-  /// The discretisation itself; its type is private to the library.
-  const SolidDiscretisation& discretisation() const { return *discretisation_; }
-
  private:
+  friend struct SolidDiscretisation;  // it alone reaches itself, for the library's own code
   Indirect<SolidDiscretisation> discretisation_;
   Indirect<SolverCache> cache_;
 };

@@ -104,7 +104,8 @@ std::vector<NearFront> fronts_near(const Vec3& x, double reach, std::span<const 
   for (const FrontEdge& e : edges) {
     const Vec3 middle = 0.5 * (e.a + e.b);
     const double length = (e.b - e.a).norm(), distance = (middle - x).norm();
-    if (distance < reach + length) near.push_back({&e, middle, length, distance});
+    if (distance < reach + length)
+      near.push_back({.edge = &e, .middle = middle, .length = length, .distance = distance});
   }
   return near;
 }
@@ -134,7 +135,8 @@ std::optional<SupportNode> diffracted_support(const Vec3& x, const Vec3& node, d
   // first order.
   Vec3 gradient = 4 * stretch / ratio * (x - path->bend).normalized() - 3 * stretch / straight * offset;
   if (const double norm = gradient.norm(); norm > steepest) gradient *= steepest / norm;
-  return SupportNode{node, stretch * straight, gradient, support};
+  return SupportNode{
+      .position = node, .distance = stretch * straight, .distance_gradient = gradient, .support = support};
 }
 
 }  // namespace geo

@@ -273,7 +273,7 @@ Galerkin::Galerkin(const Body& body, std::span<const std::uint32_t> component, M
       std::vector<SupportTask> tasks;
       for (std::size_t i = 0; i < all.size(); ++i) {
         set_position(body, cells[i / 4].point[i % 4], all[i]);
-        tasks.push_back({&all[i], &shapes[i]});
+        tasks.push_back({.point = &all[i], .shape = &shapes[i]});
       }
       compute_supports(body, std::move(tasks), &occluders, nullptr, component);
       set_volumes(cells, all);
@@ -334,7 +334,11 @@ PointChanges Galerkin::rebuild_changed(const Body& body, std::span<const std::ui
     for (std::size_t s = 0; s < r.stale.size(); ++s) {
       const PointBlock::Source& source = r.sources[r.stale[s]];
       MaterialPoint& point = r.points[r.stale[s]];
-      tasks.push_back({&point, &r.shapes[s], source.block, source.point, wants_values(point.position)});
+      tasks.push_back({.point = &point,
+                       .shape = &r.shapes[s],
+                       .before = source.block,
+                       .point_before = source.point,
+                       .with_values = wants_values(point.position)});
     }
   compute_supports(body, std::move(tasks), nullptr, &changes.visibility(), component, &near_);
   parallel_for(updates.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -168,7 +168,7 @@ std::vector<HeldMaterial::Anchors> HeldMaterial::anchors_of(const Body& body,
       Eigen::Matrix4d corners;
       for (Eigen::Index a = 0; a < 4; ++a)
         corners.col(a) << 1, body.nodes.position[(*four)[static_cast<std::size_t>(a)]];
-      all.push_back({key.first, key.second, *four, corners.inverse()});
+      all.push_back({.box = key.first, .component = key.second, .node = *four, .coordinates = corners.inverse()});
     }
   return all;
 }
@@ -261,7 +261,8 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
         r->held.points[i].volume = block.points[i].volume;
         r->held.points[i].unscaled_volume = block.points[i].unscaled_volume;
       }
-      replaced_.push_back({b, std::exchange(block, std::move(r->held)), {}, first});
+      replaced_.push_back(
+          {.block = b, .plain = std::exchange(block, std::move(r->held)), .held = {}, .first_point = first});
       continue;
     }
     Near& n = near.emplace_back();
@@ -302,7 +303,8 @@ std::vector<HeldMaterial::Candidate> HeldMaterial::candidates_in(const Near& nea
     if (p.quality != MomentQuality::singular && std::any_of(anchors_.begin(), anchors_.end(), [&](const Anchors& a) {
           return (p.position - nearest_in(boxes_[a.box], p.position)).norm() < reach;
         })) {
-      Candidate& c = candidates.emplace_back(Candidate{near.block, i, p, {}, {}});
+      Candidate& c =
+          candidates.emplace_back(Candidate{.block = near.block, .point = i, .copy = p, .plain = {}, .held = {}});
       c.copy.influence_radius = 0;
       const std::size_t point = near.first_point + i;
       while (known != valued.end() && is_before(*known, point)) ++known;
@@ -330,10 +332,16 @@ void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& c
   });
   std::vector<SupportTask> tasks;
   for (Candidate& c : candidates)
-    if (c.plain.value.empty()) tasks.push_back({&c.copy, &c.plain, &points.blocks[c.block], c.point, true});
+    if (c.plain.value.empty())
+      tasks.push_back({.point = &c.copy,
+                       .shape = &c.plain,
+                       .before = &points.blocks[c.block],
+                       .point_before = c.point,
+                       .with_values = true});
   const VisibilityChanges no_changes({}, {}, body.nodes.size());
   if (!tasks.empty()) compute_supports(body, std::move(tasks), nullptr, &no_changes, component);
-  const Shapes shapes{body, box_of_node_, boxes_, anchors_, component};
+  const Shapes shapes{
+      .body = body, .box_of_node = box_of_node_, .boxes = boxes_, .anchors = anchors_, .component = component};
   parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       candidates[k].held = shapes.at(candidates[k].copy.position, candidates[k].plain);
@@ -355,10 +363,10 @@ void HeldMaterial::replace(const Body& body, const std::vector<std::uint32_t>& c
   });
   for (std::size_t b = 0; b < blocks.size(); ++b)
     if (is_replaced[b])
-      replaced_.push_back({blocks[b].block,
-                           std::exchange(points.blocks[blocks[b].block], std::move(held[b])),
-                           {},
-                           blocks[b].first_point});
+      replaced_.push_back({.block = blocks[b].block,
+                           .plain = std::exchange(points.blocks[blocks[b].block], std::move(held[b])),
+                           .held = {},
+                           .first_point = blocks[b].first_point});
 }
 
 }  // namespace geo

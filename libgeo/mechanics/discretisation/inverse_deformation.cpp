@@ -16,9 +16,12 @@ namespace geo {
 namespace {
 
 // Material crushed to less than a twentieth of its volume, or inverted, is treated as undeformed.
+// Crushed along one axis, it has an inverse of norm 20 there: a residual of a tenth of a support
+// radius would become a step of two radii, beyond all nodes that carry the place.
 Mat3 safe_inverse(const Mat3& f) { return f.determinant() > 0.05 ? Mat3(f.inverse()) : Mat3::Identity(); }
 
-// A place in the material continues another within this distance, in spacings.
+// A place in the material continues another within this distance, in spacings. Both are carried by
+// a common node then: a support radius is about two spacings (SampleOptions::support).
 constexpr double continuing_distance = 4;
 
 // Triangles lower than this share of their longest side have no say: barycentric coordinates are
@@ -62,12 +65,17 @@ bool InverseDeformation::is_included(FaceId f) const {
 }
 
 void InverseDeformation::update(Neighborhood& near, const Vec3& x) const {
+  // The nodes that are gathered below carry each place within half a support radius. A larger box
+  // is gathered less often and has more nodes in each evaluation.
   if ((near.material - x).norm() < 0.5 * largest_support_) return;
   near.material = x;
   near.node.clear();
   near.fading.clear();
   // The margin is far beyond rounding.
   const Box3 about = Box3{x, x}.grown((0.5 + 1e-9) * largest_support_);
+  // A node that carries x is within one radius of it in the material, so within the radius times
+  // the stretch in the world. Nodes count fully up to a stretch of 1.5. From 3 on they belong to
+  // another part of the material that passes by.
   for (const auto i : supporting_nodes(body_, about, 1, largest_support_))
     if (const double fading = fade((near.world - world_[i]).norm() / body_.nodes.radius[i], 1.5, 3);
         fading > 0 && is_included(i)) {
@@ -98,7 +106,7 @@ bool InverseDeformation::deform(Neighborhood& near, const Vec3& x, Vec3& to, Mat
 // Where the residual does not fall, the inverse that the steps have changed may be at fault: it is
 // set to that of F at the best place.
 Vec3 InverseDeformation::solve(Neighborhood& near, Vec3 x, double tolerance) const {
-  constexpr double least_share = 0.1;  // of a step's square; below it, an update of the inverse is left out
+  constexpr double least_alignment = 0.1;  // of a step's square; below it, an update of the inverse is left out
   constexpr double infinite = std::numeric_limits<double>::infinity();
   Vec3 best = x, to, residual = Vec3::Zero(), step = Vec3::Zero();
   Mat3 f, f_best = Mat3::Identity(), inverse = Mat3::Identity();
@@ -110,7 +118,7 @@ Vec3 InverseDeformation::solve(Neighborhood& near, Vec3 x, double tolerance) con
       if (smallest == infinite)
         inverse = safe_inverse(f);
       else if (const Vec3 expected = inverse * (residual - now);
-               std::abs(step.dot(expected)) > least_share * step.squaredNorm()) {
+               std::abs(step.dot(expected)) > least_alignment * step.squaredNorm()) {
         inverse += (step - expected) * (step.transpose() * inverse) / step.dot(expected);
         is_changed = true;
       }
@@ -151,8 +159,9 @@ Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, doub
   Mat3 f;
   if (!deform(near, x, to, f)) return Vec3::Zero();
   const Mat3 f_inverse = safe_inverse(f);
-  // The box holds the material within `range` in the world, if F hardly changes there. Twice the
-  // range bounds it: beyond, another part of the material may be near y in the world.
+  // A step dy in the world is F⁻¹ dy in the material, whose k-th component is at most the norm of
+  // the k-th row of F⁻¹ times |dy|. With the factor 1.5, F⁻¹ may differ by half within `range`.
+  // Twice the range bounds the box: beyond, another part of the material may be near y.
   const Vec3 reach = range * (1.5 * f_inverse.rowwise().norm()).cwiseMin(2);
   std::vector<FaceId> faces;
   body_.surface.faces_near({x - reach, x + reach}, faces);
@@ -199,7 +208,9 @@ InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, Vert
   const auto& nodes = body_.nodes;
   if (!((y - world_[a]).norm() < nodes.radius[a])) return {y - u_[a], NodeId(a), false};
   // Each node's own inverse affine map counts as far as it agrees with the nearest node's. It
-  // counts fully up to half a support radius apart, not at all from one on.
+  // counts fully up to half a support radius apart. From one radius on it does not count, because
+  // the nearest node does not carry the place that it gives. The result depends little on this: it
+  // is only where the iteration begins.
   const auto affine_inverse = [&](std::size_t i) {
     return Vec3(nodes.position[i] + safe_inverse(Mat3::Identity() + gradient_[i]) * (y - world_[i]));
   };

@@ -156,7 +156,7 @@ void PointBlock::quantise(std::size_t quad) {
     for (std::size_t q = 3 * entry_begin[point]; q < 3 * entry_begin[point + 1]; ++q)
       size = std::max(size, std::abs(entry_gradient[q]));
     if (size > 0) {
-      cursors[k] = {entry_begin[point], entry_begin[point + 1], largest / size};
+      cursors[k] = {.entry = entry_begin[point], .end = entry_begin[point + 1], .scale = largest / size};
       quantum[point] = float(size / largest);
     }
   }
@@ -204,7 +204,7 @@ ShapeGradients PointBlock::shape_gradients(std::size_t point) const {
 
 void PointBlock::set_materials(const Materials& materials) {
   const auto padded = static_cast<std::uint32_t>(quantum.size());
-  material_ranges.assign(1, {0, padded});
+  material_ranges.assign(1, {.begin = 0, .end = padded});
   if (materials.count() == 1) return;
   material_ranges.clear();
   std::vector<std::uint16_t> present;
@@ -222,7 +222,9 @@ void PointBlock::set_materials(const Materials& materials) {
     if (present.size() == 1 && extensible && material_ranges.back().material == present[0])
       material_ranges.back().end = begin + 8;
     else
-      for (const auto material : present) material_ranges.push_back({begin, begin + 8, material, present.size() == 1});
+      for (const auto material : present)
+        material_ranges.push_back(
+            {.begin = begin, .end = begin + 8, .material = material, .uniform = present.size() == 1});
   }
 }
 

@@ -106,7 +106,7 @@ std::vector<Mat3> NodalGradientOperator::gradients(const std::vector<Vec3>& u) c
 
 ShapeGradients NodalGradientOperator::shape_gradients(std::size_t i) const {
   const Node& node = nodes_[i];
-  ShapeGradients shape{node.neighbors, node.gradient, {}};
+  ShapeGradients shape{.nodes = node.neighbors, .gradient = node.gradient, .bent = {}};
   const auto at = std::lower_bound(shape.nodes.begin(), shape.nodes.end(), i) - shape.nodes.begin();
   shape.nodes.insert(shape.nodes.begin() + at, static_cast<std::uint32_t>(i));
   shape.gradient.insert(shape.gradient.begin() + at, node.own_gradient);

@@ -23,7 +23,7 @@ constexpr double ill_conditioned = 500;  // and so does one with a larger condit
 // of 1 / support radius (docs/decisions/061).
 constexpr double steepest_shape = 4;
 constexpr double without_strain = 1e7;  // times the rounding unit 1e-16: linear fields would be off by 1e-9
-constexpr std::size_t least_tasks = 4, most_tasks = 32;  // of a batch; affects speed alone
+constexpr std::size_t least_tasks = 4, max_tasks = 32;  // of a batch; affects speed alone
 // A path to a node that is shorter than its support S admits stays within ½ √(L² − s²) of the box
 // of point and node, with s their distance and L = (S / s)^¼ s. That is at most 0.1624 S, where s =
 // 9/16 S. The rest covers the distance of a path from its front edge.
@@ -146,8 +146,14 @@ struct Batch {
       for (std::size_t k = 0; k < factors.size() && !enough; ++k) {
         // With too few nodes in the component no factor is enough: the last one decides.
         if (few) k = factors.size() - 1;
-        enough = compute({body, task, factors[k], occluders.faces, changes, components, changed[t]}, candidates, fronts,
-                         scratch);
+        enough = compute({.body = body,
+                          .task = task,
+                          .factor = factors[k],
+                          .faces = occluders.faces,
+                          .changes = changes,
+                          .components = components,
+                          .changed = changed[t]},
+                         candidates, fronts, scratch);
         few = scratch.component && components.size(*scratch.component) < enough_nodes;
       }
       if (!enough) deficient.push_back(task);
@@ -344,7 +350,7 @@ struct Batch {
 // Consecutive tasks whose points are closer than `distance` to the first one's.
 std::vector<Batch> batches_of(std::span<const SupportTask> tasks, double distance) {
   constexpr std::size_t shares = 16;  // so that few tasks keep several threads busy, too
-  const std::size_t tasks_per_batch = std::clamp(tasks.size() / shares, least_tasks, most_tasks);
+  const std::size_t tasks_per_batch = std::clamp(tasks.size() / shares, least_tasks, max_tasks);
   std::vector<Batch> batches;
   for (std::size_t begin = 0, end; begin < tasks.size(); begin = end) {
     const Vec3& first = tasks[begin].point->position;
@@ -386,7 +392,8 @@ VisibilityChanges::NearFaces VisibilityChanges::seen_from(const Vec3& x, std::sp
   near.x = x;
   for (const auto f : faces) {
     const auto& [middle, radius] = balls_[f];
-    near.faces.push_back({middle, 2 * radius, (middle - x).norm(), &faces_.corners(f)});
+    near.faces.push_back(
+        {.middle = middle, .twice_radius = 2 * radius, .distance = (middle - x).norm(), .corners = &faces_.corners(f)});
   }
   return near;
 }

@@ -31,7 +31,11 @@ std::array<QuadratureCell, 2> make_halves(const Lattice& lattice, const Region& 
   const double edge = lattice.edge(region.cell.level);
   std::array<QuadratureCell, 2> halves;
   for (std::uint8_t h = 0; h < 2; ++h) {
-    halves[h] = {region.cell, true, static_cast<std::uint8_t>(h + 1), 0.5 * edge * edge * edge, {}};
+    halves[h] = {.cell = region.cell,
+                 .whole = true,
+                 .half = static_cast<std::uint8_t>(h + 1),
+                 .volume = 0.5 * edge * edge * edge,
+                 .point = {}};
     for (int k = 0; k < 4; ++k)
       halves[h].point[static_cast<std::size_t>(k)] = region.probe + 0.25 * edge * tetrahedron_corner(k, h == 1);
   }
@@ -62,7 +66,8 @@ QuadratureCell make_cell(const RegionTree& tree, const Lattice& lattice, const R
   const double edge = lattice.edge(region.cell.level);
   const auto& c = region.cell.corner;
   const bool mirrored = (c[0] ^ c[1] ^ c[2]) >> region.cell.level & 1;
-  QuadratureCell cell{region.cell, !region.cut(), 0, edge * edge * edge, {}};
+  QuadratureCell cell{
+      .cell = region.cell, .whole = !region.cut(), .half = 0, .volume = edge * edge * edge, .point = {}};
   if (cell.whole) {
     for (int k = 0; k < 4; ++k)
       cell.point[static_cast<std::size_t>(k)] = region.probe + edge / std::sqrt(12.0) * tetrahedron_corner(k, mirrored);

@@ -25,7 +25,10 @@ double condition_bound(const Mat4& m, const Mat4& inverse) {
 SupportNode direct_support(const Vec3& x, const Vec3& node, double support) {
   const Vec3 offset = x - node;
   const double distance = offset.norm();
-  return {node, distance, distance > 0 ? Vec3(offset / distance) : Vec3(Vec3::Zero()), support};
+  return {.position = node,
+          .distance = distance,
+          .distance_gradient = distance > 0 ? Vec3(offset / distance) : Vec3(Vec3::Zero()),
+          .support = support};
 }
 
 double shape_gradients(const Vec3& x, std::span<const SupportNode> nodes, std::vector<Vec3>& gradient,

@@ -234,8 +234,20 @@ ElasticConstants elastic_constants(const Material& m, double dt) {
   // The reparametrised constants of the stable neo-Hookean energy (StableConstants in
   // elasticity.cpp).
   if (m.model == ElasticModel::neo_hookean)
-    return {true, 4.0 / 3.0 * m.mu(), m.lambda() + 5.0 / 6.0 * m.mu(), m.volume_term, m.viscosity, dt, m.yield > 0};
-  return {false, m.mu(), m.lambda(), m.volume_term, m.viscosity, dt, m.yield > 0};
+    return {.neo_hookean = true,
+            .mu = 4.0 / 3.0 * m.mu(),
+            .lambda = m.lambda() + 5.0 / 6.0 * m.mu(),
+            .volume = m.volume_term,
+            .viscosity = m.viscosity,
+            .dt = dt,
+            .yields = m.yield > 0};
+  return {.neo_hookean = false,
+          .mu = m.mu(),
+          .lambda = m.lambda(),
+          .volume = m.volume_term,
+          .viscosity = m.viscosity,
+          .dt = dt,
+          .yields = m.yield > 0};
 }
 
 void elastic_response(const ElasticConstants& constants, PointRange range, const std::vector<double>& volume,
@@ -246,12 +258,12 @@ void elastic_response(const ElasticConstants& constants, PointRange range, const
   float* const elastic[3] = {elastic_gradient ? elastic_gradient->column[0].data() : nullptr,
                              elastic_gradient ? elastic_gradient->column[1].data() : nullptr,
                              elastic_gradient ? elastic_gradient->column[2].data() : nullptr};
-  const ElasticArrays arrays{volume.data(),
-                             history.inverse_plastic_stretch ? inverse_stretch.data() : nullptr,
-                             history.previous_gradient ? previous.data() : nullptr,
-                             stress,
-                             energy.data(),
-                             elastic_gradient ? elastic : nullptr};
+  const ElasticArrays arrays{.volume = volume.data(),
+                             .inverse_stretch = history.inverse_plastic_stretch ? inverse_stretch.data() : nullptr,
+                             .previous = history.previous_gradient ? previous.data() : nullptr,
+                             .gradient = stress,
+                             .energy = energy.data(),
+                             .elastic_gradient = elastic_gradient ? elastic : nullptr};
   HWY_DYNAMIC_DISPATCH(Elastic)(constants, range, arrays);
 }
 

@@ -107,9 +107,19 @@ Mat9 stress_derivative(const Material& m, const Mat3& f) {
 
 StiffnessConstants stiffness_constants(const Material& m) {
   if (m.model == ElasticModel::saint_venant_kirchhoff)
-    return {false, float(m.mu()), float(m.lambda()), 1, float(m.volume_term), 0};
+    return {.neo_hookean = false,
+            .mu = float(m.mu()),
+            .lambda = float(m.lambda()),
+            .alpha = 1,
+            .volume = float(m.volume_term),
+            .viscous = 0};
   const StableConstants p(m);
-  return {true, float(p.mu), float(p.lambda), float(p.alpha), float(m.volume_term), 0};
+  return {.neo_hookean = true,
+          .mu = float(p.mu),
+          .lambda = float(p.lambda),
+          .alpha = float(p.alpha),
+          .volume = float(m.volume_term),
+          .viscous = 0};
 }
 
 // A Cholesky factorisation that succeeds proves that no eigenvalue is below −1e-9 of the diagonal,

@@ -64,7 +64,7 @@ Aggregates::Aggregates(const std::vector<Vec3>& position, const NodalGradientOpe
     Box3 box;
     for (end = begin; end < n && component_of[nodes[end]] == c; ++end) box.add(position[nodes[end]]);
     axis[c] = longest_side(box);
-    boxes.divide({&nodes[begin], end - begin}, std::max(size.least_nodes, (end - begin) / size.most_per_component));
+    boxes.divide({&nodes[begin], end - begin}, std::max(size.least_nodes, (end - begin) / size.max_per_component));
   }
   // Connected nodes of each box, by depth-first search.
   std::vector<std::uint32_t> stack;

@@ -19,8 +19,8 @@ struct Aggregates {
   /// Bounds of the size of aggregates. Ninety-six nodes cost as many iterations as forty, and less
   /// than half the time of the factor (docs/decisions/044).
   struct Size {
-    std::size_t least_nodes = 96;         ///< of a box before it is divided into connected sets
-    std::size_t most_per_component = 72;  ///< boxes of a component, or twice that; bounds the bandwidth of the factor
+    std::size_t least_nodes = 96;        ///< of a box before it is divided into connected sets
+    std::size_t max_per_component = 72;  ///< boxes of a component, or twice that; bounds the bandwidth of the factor
   };
   /// No aggregates.
   Aggregates() = default;

@@ -11,11 +11,11 @@
 namespace geo {
 namespace {
 
-// Damping of the coarse correction in the sum of both levels. Overlapping subdomains move large
+// Relaxation of the coarse correction in the sum of both levels. Overlapping subdomains move large
 // parts, too; with the whole coarse correction added, the largest eigenvalue of the preconditioned
 // matrix grows. Measured: fewest iterations at 0.35 to 0.4, a tenth to a fifth fewer than at 1
 // (docs/decisions/045).
-constexpr float damping = 0.4f;
+constexpr float relaxation = 0.4f;
 
 bool is_zero(const float* tile_numbers) {
   return std::all_of(tile_numbers, tile_numbers + tile, [](float x) { return x == 0; });
@@ -74,8 +74,9 @@ CoarseCorrection::BlockTiles CoarseCorrection::block_tiles(const PointBlock& blo
     arm.insert(arm.end(), numbers.begin(), numbers.end());
   }
   result.tiles.assign(tile * own.size() * (own.size() + 1) / 2, 0);
-  rigid_stiffness({block, stiffness.modes[b], stiffness.weight[b], moduli, stride}, slot, arm.data(),
-                  result.tiles.data());
+  rigid_stiffness(
+      {.block = block, .modes = stiffness.modes[b], .weight = stiffness.weight[b], .moduli = moduli, .stride = stride},
+      slot, arm.data(), result.tiles.data());
   return result;
 }
 
@@ -139,7 +140,7 @@ void CoarseCorrection::solve(const std::vector<Vec3>& r, const ActiveIslands& ac
     }
   });
   matrix_.solve(motion_.data());
-  for (float& v : motion_) v *= damping;
+  for (float& v : motion_) v *= relaxation;
 }
 
 }  // namespace geo

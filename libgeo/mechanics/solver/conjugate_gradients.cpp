@@ -8,7 +8,7 @@
 namespace geo {
 namespace {
 
-constexpr int most_iterations = 500;  // ends a solve that rounding keeps from converging
+constexpr int max_iterations = 500;  // ends a solve that rounding keeps from converging
 
 // Reductions of r · M⁻¹ r, the square of the preconditioned norm of the residual: to about a half
 // (docs/decisions/049) and a quarter (048) of that norm.
@@ -45,7 +45,7 @@ class Solve {
     initial_rz_ = rz_;
     const bool coarse_moves = stopping_.first_direction && move_along_coarse_level();
     working_.each_node([&](std::size_t i) { p_[i] = z_[i]; });
-    while (iterations_ < most_iterations && select_unconverged()) {
+    while (iterations_ < max_iterations && select_unconverged()) {
       iterate();
       ++iterations_;
     }

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "kerf/potential.h"
 #include "kerf/solid.h"
 #include "mechanics/solver/debris.h"
 #include "mechanics/solver/fixed_nodes.h"
 #include "mechanics/solver/solid_discretisation.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 namespace {
@@ -85,9 +85,13 @@ void apply_forces(const ExplicitStep& step, const std::vector<Vec3>& force, doub
 }  // namespace
 
 StepReport Solid::step_explicit(State& state, double dt, const Environment& environment) {
-  constexpr int most_attempts = 8;
+  constexpr int max_attempts = 8;
   const SolidDiscretisation& solid = *discretisation_;
-  ExplicitStep step{solid, environment, dt, std::vector<double>(size(), 0), {}};
+  ExplicitStep step{.solid = solid,
+                    .environment = environment,
+                    .dt = dt,
+                    .inverse_mass = std::vector<double>(size(), 0),
+                    .relaxation = {}};
   for (std::size_t i = 0; i < size(); ++i)
     if (!is_fixed(environment, i)) step.inverse_mass[i] = 1 / solid.mass[i];
   StepReport report;
@@ -114,7 +118,7 @@ StepReport Solid::step_explicit(State& state, double dt, const Environment& envi
     }
     report.energy = solid.elastic_energy(s.displacement, nullptr, step.relaxation);
     const bool rose = !(total() <= 1.05 * (initial + added) + rounding);
-    if (rose && attempt < most_attempts) continue;
+    if (rose && attempt < max_attempts) continue;
     solid.update_plasticity(s, dt);
     state = std::move(s);
     keep_debris_rigid(solid, environment.fixed, state);

@@ -1,17 +1,17 @@
 // Solid::step_implicit() of kerf/solid.h. The implicit time step: backward Euler, with steps halved
 // where Newton's method does not converge.
 #include "kerf/parallel.h"
+#include "kerf/potential.h"
 #include "kerf/solid.h"
 #include "mechanics/solver/debris.h"
 #include "mechanics/solver/elastic_potential.h"
 #include "mechanics/solver/newton_solver.h"
 #include "mechanics/solver/solver_cache.h"
-#include "mechanics/terms/potential.h"
 
 namespace geo {
 namespace {
 
-constexpr double least_share = 1.0 / 1024;  // of the whole step; a step as short is taken converged or not
+constexpr double shortest_substep = 1.0 / 1024;  // of the whole step; a step as short is taken converged or not
 
 // The whole step, of which substeps are halves of halves.
 struct WholeStep {
@@ -29,9 +29,10 @@ void advance(const WholeStep& whole, double from, double h) {
   State& state = whole.state;
   for (Potential* p : whole.environment.contact)
     p->begin_substep(state.displacement, from / whole.dt, (from + h) / whole.dt);
-  const StepProblem problem{whole.solid, state, h, whole.environment, whole.accuracy};
+  const StepProblem problem{
+      .solid = whole.solid, .start = state, .dt = h, .environment = whole.environment, .accuracy = whole.accuracy};
   NewtonSolver solver(problem, whole.cache);
-  if (!solver.solve(whole.report) && h > whole.dt * least_share) {
+  if (!solver.solve(whole.report) && h > whole.dt * shortest_substep) {
     advance(whole, from, h / 2);
     advance(whole, from + h / 2, h / 2);
     return;
@@ -52,7 +53,14 @@ void advance(const WholeStep& whole, double from, double h) {
 StepReport Solid::step_implicit(State& state, double dt, const Environment& environment, double accuracy) {
   StepReport report;
   const SolidDiscretisation& solid = *discretisation_;
-  advance({solid, state, dt, environment, accuracy, *cache_, report}, 0, dt);
+  advance({.solid = solid,
+           .state = state,
+           .dt = dt,
+           .environment = environment,
+           .accuracy = accuracy,
+           .cache = *cache_,
+           .report = report},
+          0, dt);
   if (solid.is_plastic()) report.energy = solid.elastic_energy(state.displacement, nullptr, solid.relaxation_of(state));
   keep_debris_rigid(solid, environment.fixed, state);
   set_rotations(state);
@@ -61,9 +69,9 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& envi
 
 std::vector<Vec3> Solid::stiffness_product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) const {
   const SolidDiscretisation& solid = *discretisation_;
-  const State at_rest{u, std::vector<Vec3>(size(), Vec3::Zero())};
+  const State at_rest{.displacement = u, .velocity = std::vector<Vec3>(size(), Vec3::Zero())};
   const Environment none;
-  const StepProblem problem{solid, at_rest, 1, none, 1};
+  const StepProblem problem{.solid = solid, .start = at_rest, .dt = 1, .environment = none, .accuracy = 1};
   const Islands islands(solid.points, solid.component, solid.components, {});
   const ActiveIslands all(islands, solid.subdomains);
   ElasticPotential elastic(problem);

@@ -166,12 +166,12 @@ std::vector<Mat3> MomentumBalance::inverse_blocks() const {
 // The translation of each free-floating island.
 std::vector<Vec3> MomentumBalance::solved() const {
   constexpr double reduction = 1e-12;  // of the squared residual: far below what friction may err by
-  constexpr int most_iterations = 100;
+  constexpr int max_iterations = 100;
   const std::vector<Mat3> inverse = inverse_blocks();
   const std::size_t n = mass_.size();
   std::vector<Vec3> x(n, Vec3::Zero()), r = residual_, z(n, Vec3::Zero()), p = z;
   double before = 0, first = 0;
-  for (int k = 0; k < most_iterations; ++k) {
+  for (int k = 0; k < max_iterations; ++k) {
     double rz = 0;
     for (std::size_t f = 0; f < n; ++f) {
       z[f] = inverse[f] * r[f];

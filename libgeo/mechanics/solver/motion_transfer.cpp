@@ -25,7 +25,11 @@ struct Momenta {
     inertia += m * (x.squaredNorm() * Mat3::Identity() - x * x.transpose());
   }
   friend Momenta operator+(const Momenta& a, const Momenta& b) {
-    return {a.mass + b.mass, a.moment + b.moment, a.linear + b.linear, a.angular + b.angular, a.inertia + b.inertia};
+    return {.mass = a.mass + b.mass,
+            .moment = a.moment + b.moment,
+            .linear = a.linear + b.linear,
+            .angular = a.angular + b.angular,
+            .inertia = a.inertia + b.inertia};
   }
 };
 

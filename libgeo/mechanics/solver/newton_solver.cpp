@@ -12,9 +12,9 @@
 namespace geo {
 namespace {
 
-constexpr int most_iterations = 20;  // more are slower than two steps of half the length
-constexpr int most_balanced = 8;     // further ones end where displacements are accurate
-constexpr int most_halvings = 16;    // of a direction; each trial is at most half the one before
+constexpr int max_iterations = 20;  // more are slower than two steps of half the length
+constexpr int max_balanced = 8;     // further ones end where displacements are accurate
+constexpr int max_halvings = 16;    // of a direction; each trial is at most half the one before
 // Spacings that an island may move before its stiffness is recomputed: strains change by about a
 // tenth. Measured in docs/decisions/044 and 048.
 constexpr double stale_after = 0.1;
@@ -40,7 +40,7 @@ bool NewtonSolver::solve(StepReport& report) {
   at_ = predict(potential_, rotation_, active_);
   trial_ = predicted_ = at_.u;
   potential_.begin_iterate(active_, at_.value);
-  for (int k = 0; k < most_iterations; ++k) {
+  for (int k = 0; k < max_iterations; ++k) {
     if (!iterate(k == 0, report)) return false;
     if (active_.none()) {
       report.energy = std::accumulate(at_.response.energy.begin(), at_.response.energy.end(), 0.0);
@@ -71,7 +71,7 @@ bool NewtonSolver::iterate(bool first, StepReport& report) {
   const std::vector<RigidMotion> rotations = rotation_.rotations(at_.u, direction_.step);
   std::vector<char> searching = unconverged(rotations);
   // A direction that only balances momentum may alternate between contacts without end.
-  if (++iterates_ <= most_balanced) balance.mark_unbalanced(direction_.step, iterates_, searching);
+  if (++iterates_ <= max_balanced) balance.mark_unbalanced(direction_.step, iterates_, searching);
   for (std::size_t p = 0; p < searching.size(); ++p) searching[p] = searching[p] && active_[p];
   return line_search(rotations, std::move(searching));
 }
@@ -145,7 +145,7 @@ bool NewtonSolver::line_search(const std::vector<RigidMotion>& rotations, std::v
         searching[p] = 0;
         at_.value[p] = value[p];
         moved_[p] += share[p] * length_[p];
-      } else if (halvings == most_halvings) {
+      } else if (halvings == max_halvings) {
         if (!(length_[p] * share[p] < problem_.accuracy)) return false;
         active[p] = searching[p] = 0;
       } else {

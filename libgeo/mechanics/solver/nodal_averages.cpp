@@ -14,7 +14,7 @@ namespace geo {
 std::vector<StressSums> nodal_stress_sums(const Solid& solid, const NodeSet& nodes, const State& state,
                                           const BlockStress& stress) {
   constexpr std::size_t width = 8, used = std::tuple_size_v<StressSums>;
-  const MaterialPoints& points = solid.discretisation().points;
+  const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   UninitializedArray<float> block_sums(width * points.scatter_size());
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<double> values;
@@ -52,7 +52,7 @@ std::vector<StressSums> nodal_stress_sums(const Solid& solid, const NodeSet& nod
 
 std::vector<StressSums> nodal_stress_sums(const Solid& solid, const NodeSet& nodes, const State& state,
                                           const PointStress& stress) {
-  const MaterialPoints& points = solid.discretisation().points;
+  const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   const auto block_stress = [&](std::size_t b, const PointMatrices<double>& gradient, float* out) {
     const PointBlock& block = points.blocks[b];
     std::array<double, 6> components;

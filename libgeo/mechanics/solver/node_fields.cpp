@@ -37,7 +37,7 @@ double von_mises(const StressSums& sum) {
 
 std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes, const VisibilityGraph& graph,
                                         const State& state) {
-  const auto gradient = solid.discretisation().mls.padded_gradients(state.displacement);
+  const auto gradient = SolidDiscretisation::of(solid).mls.padded_gradients(state.displacement);
   const std::vector<PaddedVec3> displacement = padded(state.displacement);
   std::vector<PaddedVec3> place = padded(nodes.position);
   for (std::size_t i = 0; i < place.size(); ++i) place[i].at[3] = 1 / (nodes.radius[i] * nodes.radius[i]);
@@ -56,7 +56,7 @@ std::vector<Vec3> material_displacement(const Solid& solid, const NodeSet& nodes
 }
 
 std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, const State& state) {
-  const MaterialPoints& points = solid.discretisation().points;
+  const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   std::vector<ElasticConstants> constants;  // per material
   for (const Material& m : solid.materials().all()) constants.push_back(elastic_constants(m));
   const bool plastic = !state.plastic.empty();

@@ -83,7 +83,7 @@ std::vector<Vec3> inertial_prediction(const IncrementalPotential& potential, con
 // Returns per island whether its nodes were moved.
 std::vector<char> warm_start(IncrementalPotential& potential, const FiniteRotation& rotation, ActiveIslands all,
                              NewtonIterate& at) {
-  constexpr double least_share = 0.2;  // a shorter way back gains less than its evaluation costs
+  constexpr double least_way_back = 0.2;  // a shorter way back gains less than its evaluation costs
   const StepProblem& problem = potential.problem();
   const SolidDiscretisation& solid = problem.solid;
   const std::vector<Vec3>& start = problem.start.displacement;
@@ -108,7 +108,7 @@ std::vector<char> warm_start(IncrementalPotential& potential, const FiniteRotati
     if (!candidate[p] || rotates[p]) continue;
     const double bend = 2 * (value_at_start[p] - at.value[p] + decrease[p]),
                  best = bend > decrease[p] ? decrease[p] / bend : 1;
-    if (best > least_share) share[p] = best > 1 - least_share ? 1 : best;
+    if (best > least_way_back) share[p] = best > 1 - least_way_back ? 1 : best;
   }
   for (std::size_t p = 0; p < islands; ++p) moved[p] = rotates[p] || share[p] > 0;
   all.select(moved);

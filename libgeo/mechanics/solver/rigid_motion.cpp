@@ -88,8 +88,11 @@ std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& set, co
           entry = run.rbegin();
         }
         const Vec3 arm = from(i) - base[p], d = displacement(i), weighted = mass[i] * d;
-        entry->second +=
-            Moments{mass[i], mass[i] * arm, weighted, mass[i] * arm * arm.transpose(), weighted * arm.transpose()};
+        entry->second += Moments{.mass = mass[i],
+                                 .arm = mass[i] * arm,
+                                 .displacement = weighted,
+                                 .arm_arm = mass[i] * arm * arm.transpose(),
+                                 .displacement_arm = weighted * arm.transpose()};
       }
     }
   });

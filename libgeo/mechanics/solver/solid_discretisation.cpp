@@ -23,7 +23,14 @@ void SolidDiscretisation::update_nodal_points(std::span<const NodeId> updated) {
       std::vector<MaterialPoint> block_points;
       std::vector<ShapeGradients> stencils;
       for (std::size_t i = b * nodes_per_block; i < std::min(n, (b + 1) * nodes_per_block); ++i) {
-        block_points.push_back({position[i], volume[i], mls.quality(i), 0, false, 0, 0, volume[i]});
+        block_points.push_back({.position = position[i],
+                                .volume = volume[i],
+                                .quality = mls.quality(i),
+                                .widenings = 0,
+                                .occluded = false,
+                                .material = 0,
+                                .influence_radius = 0,
+                                .unscaled_volume = volume[i]});
         if (stale[b] || b >= before)
           stencils.push_back(mls.quality(i) == MomentQuality::singular ? ShapeGradients{} : mls.shape_gradients(i));
       }
@@ -49,15 +56,18 @@ void SolidDiscretisation::update_mode_penalty() {
 
 void SolidDiscretisation::update_quadrature_points(const Body& body, State& state, SubdomainInverses& inverses) {
   PointChanges changes;
-  parallel_invoke([&] { aggregates = Aggregates(position, mls, component, components); },
-                  [&] {
-                    held.restore(points);
-                    const double reach = HeldMaterial::reach_of(body.nodes);
-                    changes = galerkin->rebuild_changed(body, component, points,
-                                                        [&](const Vec3& x) { return held.is_near(x, reach); });
-                    points.set_materials(materials);
-                    inverses.update(subdomains, subdomains.update({position, mls, spacing, points}, changed, changes));
-                  });
+  parallel_invoke(
+      [&] { aggregates = Aggregates(position, mls, component, components); },
+      [&] {
+        held.restore(points);
+        const double reach = HeldMaterial::reach_of(body.nodes);
+        changes =
+            galerkin->rebuild_changed(body, component, points, [&](const Vec3& x) { return held.is_near(x, reach); });
+        points.set_materials(materials);
+        inverses.update(subdomains,
+                        subdomains.update({.position = position, .mls = mls, .spacing = spacing, .points = points},
+                                          changed, changes));
+      });
   apply_held(body, &changes);
   changed.clear();
   const auto& point_before = changes.old_point;
@@ -83,7 +93,7 @@ void SolidDiscretisation::apply_held(const Body& body, PointChanges* changes) {
 
 void SolidDiscretisation::build_preconditioner_levels() {
   aggregates = Aggregates(position, mls, component, components);
-  subdomains = Subdomains({position, mls, spacing, points});
+  subdomains = Subdomains({.position = position, .mls = mls, .spacing = spacing, .points = points});
 }
 
 double SolidDiscretisation::elastic_energy(const std::vector<Vec3>& u, std::vector<Vec3>* force,

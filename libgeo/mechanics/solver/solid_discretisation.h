@@ -25,6 +25,8 @@ namespace geo {
 struct SolidDiscretisation {
   /// Allocates nothing; update_nodes() fills it.
   explicit SolidDiscretisation(Materials of_nodes) : materials(std::move(of_nodes)) {}
+  /// The discretisation of a solid.
+  static const SolidDiscretisation& of(const Solid& solid) { return *solid.discretisation_; }
 
   Materials materials;                   ///< of each node
   std::vector<double> mass;              ///< per node, kg

@@ -17,22 +17,22 @@ namespace {
 
 // Measured (docs/decisions/043): to a hundredth of the residual, an overlap of 1.1 takes 11
 // iterations in place of 15, and three and a half times the memory.
-constexpr std::size_t most_in_leaf = 6;
+constexpr std::size_t max_in_leaf = 6;
 constexpr double overlap = 0.9;  // spacings
-constexpr int most_depth = 180;  // 60 halvings of each axis: nodes closer together share a leaf
+constexpr int max_depth = 180;   // 60 halvings of each axis: nodes closer together share a leaf
 
 // The count of numbers in the outer products of a subdomain.
 std::size_t outer_size(std::size_t nodes) { return 12 * (nodes * (nodes + 1) / 2); }
 
 using Leaves = std::vector<std::span<std::uint32_t>>;  // the nodes of each
 
-// Halves a box, one axis after another, until at most `most_in_leaf` nodes are left in each part.
+// Halves a box, one axis after another, until at most `max_in_leaf` nodes are left in each part.
 // The result depends on no node outside the box.
 void divide(const std::vector<Vec3>& position, std::span<std::uint32_t> nodes, const Vec3& centre, const Vec3& half,
             int depth, Leaves& leaves) {
   constexpr std::size_t worth_a_thread = 2048;  // nodes
   if (nodes.empty()) return;
-  if (nodes.size() <= most_in_leaf || depth == most_depth) return leaves.push_back(nodes);
+  if (nodes.size() <= max_in_leaf || depth == max_depth) return leaves.push_back(nodes);
   const int axis = depth % 3;
   const auto upper =
       std::partition(nodes.begin(), nodes.end(), [&](auto i) { return position[i][axis] < centre[axis]; });
@@ -254,12 +254,12 @@ void Subdomains::sum_points(const MaterialPoints& points, const std::vector<char
     for (std::size_t p = begin; p < end; ++p) {
       if (!wanted[p]) continue;
       outer_[p].assign(outer_size(nodes(p).size()), 0);
-      std::uint32_t most_nodes = 0;
+      std::uint32_t max_nodes = 0;
       for (const auto& [t, k] : sources[p]) {
         const BlockOuterProducts& sums = block_sums[t];
         for (std::size_t i = 0; i < outer_[p].size(); ++i) outer_[p][i] += sums.outer[sums.first[k] + i];
-        if (sums.best_point[k].nodes > most_nodes) {
-          most_nodes = sums.best_point[k].nodes;
+        if (sums.best_point[k].nodes > max_nodes) {
+          max_nodes = sums.best_point[k].nodes;
           point_[p] = {tasks[t].block, sums.best_point[k].point};
         }
       }

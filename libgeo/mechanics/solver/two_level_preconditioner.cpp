@@ -29,8 +29,11 @@ void TwoLevelPreconditioner::update_schwarz(const IncrementalPotential& potentia
   const SolidDiscretisation& solid = problem_.solid;
   const std::vector<std::uint8_t>& fixed = problem_.environment.fixed;
   if (!schwarz_) {
-    const SchwarzPreconditioner::Input input{solid.materials, moduli_, potential.point_stiffness().modes, nodal_blocks,
-                                             fixed};
+    const SchwarzPreconditioner::Input input{.materials = solid.materials,
+                                             .moduli = moduli_,
+                                             .modes = potential.point_stiffness().modes,
+                                             .blocks = nodal_blocks,
+                                             .fixed = fixed};
     schwarz_.emplace(solid.subdomains, input, cache_.inverses);
     return;
   }

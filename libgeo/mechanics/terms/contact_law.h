@@ -20,7 +20,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "mechanics/terms/potential.h"
+#include "kerf/potential.h"
 
 namespace geo {
 
@@ -87,7 +87,9 @@ struct FrictionMemory {
   bool has_iterate = false;  ///< of the substep
 
   /// Begins a substep with the normal force of that moment.
-  void begin_substep(double normal, NormalForce of) { *this = {normal, Vec3::Zero(), Vec3::Zero(), of, false}; }
+  void begin_substep(double normal, NormalForce of) {
+    *this = {.normal_force = normal, .slip = Vec3::Zero(), .last_slip = Vec3::Zero(), .kind = of, .has_iterate = false};
+  }
   /// Begins an iterate. Returns the change of the normal force that the bound is of, if that was
   /// estimated.
   double begin_iterate(const Vec3& new_slip, double normal) {

@@ -1,6 +1,7 @@
-// Gershgorin's bound: no eigenvalue of M⁻¹ Σ_k s_k w_k w_kᵀ exceeds its largest absolute row sum,
+// Potential::eigenvalue_bound() of kerf/potential.h. Gershgorin's bound: no eigenvalue of
+// M⁻¹ Σ_k s_k w_k w_kᵀ exceeds its largest absolute row sum,
 // max_i m_i⁻¹ Σ_k s_k |w_ki| Σ_j |w_kj|.
-#include "mechanics/terms/potential.h"
+#include "kerf/potential.h"
 
 #include <algorithm>
 #include <cmath>

@@ -21,7 +21,10 @@ PotentialSum::PotentialSum(std::span<Potential* const> potentials, const std::ve
     for (std::size_t k = 0; k < p->size(); ++k)
       if (const auto stencil = p->stencil(k); !stencil.empty()) {
         if (!p->within_components()) coupling_.push_back(static_cast<std::uint32_t>(terms_.size()));
-        terms_.push_back({p, static_cast<std::uint32_t>(k), stencil[0].node, p->activation_distance(k)});
+        terms_.push_back({.potential = p,
+                          .index = static_cast<std::uint32_t>(k),
+                          .first_node = stencil[0].node,
+                          .activation_distance = p->activation_distance(k)});
         stencils_.push_back(stencil);
       }
   displacement_.assign(terms_.size(), Vec3::Zero());
@@ -140,8 +143,11 @@ std::vector<PotentialSum::LinearisedTerm> PotentialSum::linearised_terms() const
   std::vector<LinearisedTerm> terms;
   for (std::size_t t = 0; t < terms_.size(); ++t)
     if (!idle_[t])
-      terms.push_back(
-          {terms_[t].potential, terms_[t].index, stencils_[t], force_[t], hessian_[t].topRows<3>().cast<double>()});
+      terms.push_back({.potential = terms_[t].potential,
+                       .index = terms_[t].index,
+                       .stencil = stencils_[t],
+                       .force = force_[t],
+                       .hessian = hessian_[t].topRows<3>().cast<double>()});
   return terms;
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/uninitialized_array.h"
-#include "mechanics/terms/potential.h"
+#include "kerf/potential.h"
 
 namespace geo {
 

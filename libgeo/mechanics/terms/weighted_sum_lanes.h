@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "mechanics/terms/potential.h"
+#include "kerf/potential.h"
 
 namespace geo {
 

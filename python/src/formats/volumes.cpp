@@ -8,6 +8,7 @@
 #include "kerf/check.h"
 #include "kerf/error.h"
 #include "kerf/files.h"
+#include "kerf/repair.h"
 
 namespace kerf_python {
 namespace {

@@ -96,7 +96,7 @@ TEST_CASE("a motion has the largest share with few pairs more than at rest") {
   const std::uint32_t n = 2000;
   std::vector<Triangle> triangles;
   for (std::uint32_t t = 0; t < n; ++t) triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
-  const double way = 4 * BroadPhase::most_per_triangle;
+  const double way = 4 * BroadPhase::max_per_triangle;
   for (const double at_rest : {0.0, 1.0}) {  // boxes of which none, or all, meet at rest
     double share = 1;
     const auto box = [&](std::size_t t) {
@@ -109,7 +109,7 @@ TEST_CASE("a motion has the largest share with few pairs more than at rest") {
     CHECK(share == (at_rest == 0 ? 0.25 : 1));
     CHECK(broad_phase.pairs().size() <= broad_phase.most_of_motion());
     CHECK(broad_phase.most_of_motion() ==
-          BroadPhase::most_per_triangle * n + (at_rest == 0 ? 0 : n * std::size_t(n - 1) / 2));
+          BroadPhase::max_per_triangle * n + (at_rest == 0 ? 0 : n * std::size_t(n - 1) / 2));
     if (at_rest == 1) continue;
     CHECK(broad_phase.update_for_share(triangles, box, 0, take) == 1);  // of what is left
     // No share of so long a way has few pairs.

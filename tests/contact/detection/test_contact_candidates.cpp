@@ -99,7 +99,7 @@ TEST_CASE("a wild motion has the candidates of a part of it, whatever the broad 
   };
   BroadPhase fresh, used, none;
   const auto expected = candidates(m.to, fresh);
-  CHECK(fresh.pairs().size() <= BroadPhase::most_per_triangle * m.triangles.size());
+  CHECK(fresh.pairs().size() <= BroadPhase::max_per_triangle * m.triangles.size());
   CHECK(!expected.empty());
   none.update(
       m.triangles,
@@ -112,7 +112,7 @@ TEST_CASE("a wild motion has the candidates of a part of it, whatever the broad 
         return box;
       },
       0);
-  CHECK(none.pairs().size() > BroadPhase::most_per_triangle * m.triangles.size());
+  CHECK(none.pairs().size() > BroadPhase::max_per_triangle * m.triangles.size());
   candidates(gentle, used);
   CHECK(candidates(m.to, used) == expected);
   CHECK(candidates(m.to, fresh) == expected);

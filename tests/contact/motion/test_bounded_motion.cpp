@@ -189,7 +189,7 @@ TEST_CASE("pairs at rest do not count against the bound of a motion") {
   for (const Vec3& x : s.from) s.to.push_back(x + 0.05 * std::sin(3 * u.dot(x)) * v);
   const std::vector<Vec3> at =
       move_without_crossing({s.triangles, s.representative, s.from, s.to, 1e-4, 2e-3}, false, nullptr, &near);
-  CHECK(near.pairs().size() > BroadPhase::most_per_triangle * s.triangles.size());
+  CHECK(near.pairs().size() > BroadPhase::max_per_triangle * s.triangles.size());
   CHECK(at == s.to);
 }
 

@@ -77,7 +77,7 @@ TEST_CASE(
     "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
   Solid solid(body, steel());
-  const MaterialPoints& points = solid.discretisation().points;
+  const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   const std::vector<std::uint32_t> whole(body.nodes.size(), 0);
   const BlockStrain exact(points);
   const auto [first_seed, count] = seeds(60);
@@ -101,7 +101,7 @@ TEST_CASE(
 TEST_CASE("forces in single precision are derivatives of the energies in single precision", "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
   Solid solid(body, steel());
-  const MaterialPoints& points = solid.discretisation().points;
+  const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   const std::vector<std::uint32_t> whole(body.nodes.size(), 0);
   const auto [first_seed, count] = seeds(30);
   for (int k = 0; k < count; ++k) {
@@ -138,7 +138,7 @@ TEST_CASE("forces in single precision are derivatives of the energies in single 
 TEST_CASE("blocks with several components, or with points of poor quality, stay in double precision", "[mechanics]") {
   const Body body = block_body({1, 0.7, 0.6}, 0.11);
   Solid solid(body, steel());
-  MaterialPoints points = solid.discretisation().points;
+  MaterialPoints points = SolidDiscretisation::of(solid).points;
   std::vector<std::uint32_t> halves;
   for (const Vec3& x : body.nodes.position) halves.push_back(x.x() > 0.5);
   Random random(3);

@@ -29,8 +29,8 @@ std::vector<Vec3> field(const Body& body, const std::function<Vec3(const Vec3&)>
 }
 
 bool same(const Solid& a, const Solid& b) {
-  return a.discretisation().points.blocks == b.discretisation().points.blocks &&
-         a.discretisation().subdomains == b.discretisation().subdomains;
+  return SolidDiscretisation::of(a).points.blocks == SolidDiscretisation::of(b).points.blocks &&
+         SolidDiscretisation::of(a).subdomains == SolidDiscretisation::of(b).subdomains;
 }
 
 // A block with a slanting cut half way through it.
@@ -52,7 +52,7 @@ TEST_CASE("quadrature cells hold the body's volume and its first moments") {
   Solid solid(body, soft());
   double volume = 0;
   Vec3 middle = Vec3::Zero();
-  for (const auto& b : solid.discretisation().points.blocks)
+  for (const auto& b : SolidDiscretisation::of(solid).points.blocks)
     for (const auto& p : b.points) {
       volume += p.volume;
       middle += p.volume * p.position;
@@ -75,10 +75,10 @@ TEST_CASE("patch test: linear fields have constant strain at all points, with a 
   linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
   const auto u = field(body, [&](const Vec3& x) { return Vec3(linear * x + Vec3(7, 8, 9)); });
   double worst = 0;
-  for (std::size_t b = 0; b < solid.discretisation().points.blocks.size(); ++b) {
-    const auto g = solid.discretisation().points.gradients(b, u);
+  for (std::size_t b = 0; b < SolidDiscretisation::of(solid).points.blocks.size(); ++b) {
+    const auto g = SolidDiscretisation::of(solid).points.gradients(b, u);
     for (std::size_t i = 0; i < g.size(); ++i)
-      if (solid.discretisation().points.blocks[b].points[i].quality != MomentQuality::singular)
+      if (SolidDiscretisation::of(solid).points.blocks[b].points[i].quality != MomentQuality::singular)
         worst = std::max(worst, (g[i] - linear).cwiseAbs().maxCoeff());
   }
   CHECK(worst < 1e-10);
@@ -90,7 +90,7 @@ TEST_CASE("no point uses a node beyond a crack that has cut through") {
   auto front = begin_front(blade_at({0.47, -0.2, 1.2}, {0.47, 1.2, 1.2}, {0, 0, -0.5}, 0), false, 1);
   for (int k = 1; k <= 3; ++k) split(body, front, blade_at({0.47, -0.2, 1.2}, {0.47, 1.2, 1.2}, {0, 0, -0.5}, k));
   Solid solid(body, soft());
-  for (const auto& b : solid.discretisation().points.blocks) {
+  for (const auto& b : SolidDiscretisation::of(solid).points.blocks) {
     for (std::size_t i = 0; i < b.points.size(); ++i)
       for (const auto j : b.shape_gradients(i).nodes)
         CHECK((b.points[i].position.x() < 0.47) == (body.nodes.position[j].x() < 0.47));
@@ -242,7 +242,7 @@ TEST_CASE(
     Solid solid(body, m);
     State state = at_rest(body);
     for (int i = 0; i < 2; ++i) solid.step_implicit(state, 0.03, env);
-    return std::pair(solid.discretisation().subdomains, state.displacement);
+    return std::pair(SolidDiscretisation::of(solid).subdomains, state.displacement);
   };
   const auto expected = run();
   REQUIRE(expected.first.count() > 128);

@@ -40,7 +40,7 @@ std::vector<HeldBox> both_ends(double length, double begin, double end) {
 
 template <class Check>
 void each_gradient(const Solid& solid, const std::vector<Vec3>& u, const Check& check) {
-  const MaterialPoints& points = solid.discretisation().points;
+  const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   for (std::size_t b = 0; b < points.blocks.size(); ++b) {
     const auto gradient = points.gradients(b, u);
     for (std::size_t i = 0; i < gradient.size(); ++i)
@@ -54,9 +54,9 @@ void each_gradient(const Solid& solid, const std::vector<Vec3>& u, const Check& 
 TEST_CASE("near held boxes, affine fields keep their gradient", "[held]") {
   const Body body = block_body({2, 1, 1}, 0.16);
   Solid solid(body, soft());
-  const auto plain = solid.discretisation().points.blocks;
+  const auto plain = SolidDiscretisation::of(solid).points.blocks;
   solid.hold(body, both_ends(2, 0.4, 1.7));
-  REQUIRE_FALSE(solid.discretisation().points.blocks == plain);
+  REQUIRE_FALSE(SolidDiscretisation::of(solid).points.blocks == plain);
   Mat3 linear;
   linear << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.0, 0.06, 0.02;
   std::vector<Vec3> u;
@@ -65,7 +65,7 @@ TEST_CASE("near held boxes, affine fields keep their gradient", "[held]") {
   each_gradient(solid, u, [&](const Vec3&, const Mat3& g) { worst = std::max(worst, (g - linear).norm()); });
   CHECK(worst < 1e-10);
   solid.hold(body, {});
-  CHECK(solid.discretisation().points.blocks == plain);
+  CHECK(SolidDiscretisation::of(solid).points.blocks == plain);
 }
 
 TEST_CASE("material in held boxes follows their nodes, whatever the nodes outside do", "[held]") {
@@ -112,12 +112,12 @@ TEST_CASE("material in held boxes follows their nodes, whatever the nodes outsid
 TEST_CASE("boxes with few nodes, or without a rigid motion, leave the material alone", "[held]") {
   const Body body = block_body({1, 1, 1}, 0.2);
   Solid solid(body, soft());
-  const auto plain = solid.discretisation().points.blocks;
+  const auto plain = SolidDiscretisation::of(solid).points.blocks;
   const Vec3& x = body.nodes.position[7];
   solid.hold(body, std::vector<HeldBox>{{x - Vec3::Constant(1e-3), x + Vec3::Constant(1e-3), true}});
-  CHECK(solid.discretisation().points.blocks == plain);
+  CHECK(SolidDiscretisation::of(solid).points.blocks == plain);
   solid.hold(body, std::vector<HeldBox>{{{-1, -1, -1}, {0.5, 2, 2}, false}, {{-1, -1, -1}, {0.5, 2, 2}, true}});
-  CHECK(solid.discretisation().points.blocks == plain);  // the first box holds the nodes
+  CHECK(SolidDiscretisation::of(solid).points.blocks == plain);  // the first box holds the nodes
 }
 
 TEST_CASE("held material after random cuts equals that of a build from scratch, bit for bit", "[held]") {
@@ -143,8 +143,8 @@ TEST_CASE("held material after random cuts equals that of a build from scratch, 
         solid.update_points(body, state);
         Solid scratch(body, soft());
         scratch.hold(body, boxes);
-        REQUIRE(solid.discretisation().points.blocks == scratch.discretisation().points.blocks);
-        REQUIRE(solid.discretisation().subdomains == scratch.discretisation().subdomains);
+        REQUIRE(SolidDiscretisation::of(solid).points.blocks == SolidDiscretisation::of(scratch).points.blocks);
+        REQUIRE(SolidDiscretisation::of(solid).subdomains == SolidDiscretisation::of(scratch).subdomains);
       }
     }
   }

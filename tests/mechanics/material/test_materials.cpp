@@ -97,7 +97,7 @@ TEST_CASE(
     Solid mixed(body, Materials({first, second}, numbers(body))),
         uniform[2] = {Solid(body, first), Solid(body, second)};
     std::size_t among = 0;
-    for (const PointBlock& b : mixed.discretisation().points.blocks)
+    for (const PointBlock& b : SolidDiscretisation::of(mixed).points.blocks)
       for (const MaterialRange& run : b.material_ranges) among += !run.uniform;
     CHECK(among > 0);
     Random random(3);
@@ -160,8 +160,8 @@ TEST_CASE("a body moves as if the other one had the same material, bit for bit")
   Solid solid(body, Materials({first, second}, numbers(body)));
   REQUIRE(mixed.plastic.size() == solid.point_count());
   double yielded[2] = {0, 0};
-  for (std::size_t b = 0, k = 0; b < solid.discretisation().points.blocks.size(); ++b)
-    for (const MaterialPoint& p : solid.discretisation().points.blocks[b].points) {
+  for (std::size_t b = 0, k = 0; b < SolidDiscretisation::of(solid).points.blocks.size(); ++b)
+    for (const MaterialPoint& p : SolidDiscretisation::of(solid).points.blocks[b].points) {
       CHECK(p.material == (p.position.y() > 0.4));
       yielded[p.material] += mixed.plastic[k++].norm();
     }
@@ -210,8 +210,8 @@ TEST_CASE("after a cut, a solid of several materials equals one built from scrat
       solid.update(body, split(body, front, blade_at({0.52, -0.2, 0.7}, {0.49, 1, 0.7}, {0, 0, -0.15}, k)), state);
     REQUIRE(body.nodes.size() > nodes);
     Solid scratch(body, Materials({first, second}, numbers(body)));
-    CHECK(solid.discretisation().points.blocks == scratch.discretisation().points.blocks);
-    CHECK(solid.discretisation().subdomains == scratch.discretisation().subdomains);
+    CHECK(SolidDiscretisation::of(solid).points.blocks == SolidDiscretisation::of(scratch).points.blocks);
+    CHECK(SolidDiscretisation::of(solid).subdomains == SolidDiscretisation::of(scratch).subdomains);
     double mass[2] = {0, 0};
     for (std::size_t i = 0; i < body.nodes.size(); ++i) {
       REQUIRE(solid.mass(NodeId(i)) == scratch.mass(NodeId(i)));

@@ -28,7 +28,7 @@ TEST_CASE("aggregates are connected sets of nodes of one component, of bounded s
     FrontState front = begin_front(std::vector<Vec3>{a, b}, false, 1);
     split(body, front, {a - Vec3(0, 0, deep), b - Vec3(0, 0, deep)});
     const Solid owner(body, Material());
-    const SolidDiscretisation& solid = owner.discretisation();
+    const SolidDiscretisation& solid = SolidDiscretisation::of(owner);
     const Aggregates::Size bounds{10 + random.below(60), 4 + random.below(60)};
     const Aggregates aggregates(solid.position, solid.mls, solid.component, solid.components, bounds);
     REQUIRE(aggregates.of.size() == solid.size());
@@ -46,7 +46,7 @@ TEST_CASE("aggregates are connected sets of nodes of one component, of bounded s
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const auto component = aggregates.component[k];
       REQUIRE_FALSE(nodes[k].empty());
-      const std::size_t most = std::max(bounds.least_nodes, component_size[component] / bounds.most_per_component);
+      const std::size_t most = std::max(bounds.least_nodes, component_size[component] / bounds.max_per_component);
       CHECK(nodes[k].size() <= most);
       divided += nodes[k].size() < component_size[component];
       // Connected: a search from the first node along neighbours reaches all.
@@ -72,7 +72,7 @@ TEST_CASE("aggregates are connected sets of nodes of one component, of bounded s
     // Boxes are halved: one as small as half the bound is a connected part of a box that cuts have
     // divided, so most are larger.
     for (std::uint32_t c = 0; c < solid.components; ++c) {
-      const std::size_t most = std::max(bounds.least_nodes, component_size[c] / bounds.most_per_component);
+      const std::size_t most = std::max(bounds.least_nodes, component_size[c] / bounds.max_per_component);
       const auto parts =
           static_cast<std::size_t>(std::count(aggregates.component.begin(), aggregates.component.end(), c));
       CHECK(parts >= component_size[c] / most);

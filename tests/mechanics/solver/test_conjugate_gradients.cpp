@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "mechanics/bodies.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 using namespace geo;
 
@@ -34,9 +35,9 @@ struct Linearised {
       : body(block_body({0.8, 0.3, 0.3}, spacing)),
         solid(body, rubber(young)),
         start(at_rest(body)),
-        problem{solid.discretisation(), start, dt, environment, accuracy},
+        problem{SolidDiscretisation::of(solid), start, dt, environment, accuracy},
         potential(problem),
-        all(potential.islands(), solid.discretisation().subdomains),
+        all(potential.islands(), SolidDiscretisation::of(solid).subdomains),
         preconditioner(problem, cache) {
     ElasticResponse response;
     std::vector<double> value;

@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "mechanics/bodies.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 using namespace geo;
 
@@ -42,7 +43,7 @@ struct Halves {
       environment.load.push_back(0.1 * random.direction());
     }
   }
-  StepProblem problem() const { return {solid.discretisation(), start, 0.02, environment, 1e-3}; }
+  StepProblem problem() const { return {SolidDiscretisation::of(solid), start, 0.02, environment, 1e-3}; }
   // Which half a node is in; the left one is 0.
   std::size_t half(std::size_t i) const { return body.nodes.position[i].x() < 0.5 ? 0 : 1; }
   bool is_free(std::size_t i) const { return !held || half(i) == 1; }
@@ -131,7 +132,7 @@ TEST_CASE("a direction gets the momenta that inertia and loads alone give, and a
     Random random(seed);
     const Turning turning(random);
     const auto& [halves, problem, potential, rotation] = turning;
-    const ActiveIslands active(potential.islands(), halves.solid.discretisation().subdomains);
+    const ActiveIslands active(potential.islands(), SolidDiscretisation::of(halves.solid).subdomains);
     const std::size_t n = halves.solid.size();
     std::vector<Vec3> u = halves.start.displacement, direction(n);
     for (std::size_t i = 0; i < n; ++i) {

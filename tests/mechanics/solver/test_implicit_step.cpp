@@ -4,10 +4,10 @@
 #include "base/random.h"
 #include "contact/response/obstacle_penalty.h"
 #include "contact/surface/surface_targets.h"
+#include "kerf/potential.h"
 #include "kerf/solid.h"
 #include "mechanics/bodies.h"
 #include "mechanics/material/elastic_lanes.h"
-#include "mechanics/terms/potential.h"
 
 using namespace geo;
 

@@ -72,7 +72,7 @@ TEST_CASE("islands are the sets of nodes that points and contact join, free-floa
     Random random(seed);
     const Body body = slabs(random);
     const Solid owner(body, Material());
-    const SolidDiscretisation& solid = owner.discretisation();
+    const SolidDiscretisation& solid = SolidDiscretisation::of(owner);
     // Every other time components fall into parts that only points join.
     std::vector<std::uint32_t> component = solid.component;
     std::uint32_t components = solid.components;
@@ -130,7 +130,7 @@ TEST_CASE("sums, maxima and work run over the selected islands, and leave the en
     Random random(seed);
     const Body body = slabs(random);
     const Solid owner(body, Material());
-    const SolidDiscretisation& solid = owner.discretisation();
+    const SolidDiscretisation& solid = SolidDiscretisation::of(owner);
     const Islands islands(solid.points, solid.component, solid.components, {});
     ActiveIslands active(islands, solid.subdomains);
     CHECK_FALSE(active.none());

@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "cases.h"
 #include "mechanics/bodies.h"
+#include "mechanics/solver/solid_discretisation.h"
 
 using namespace geo;
 
@@ -46,9 +47,9 @@ struct Prediction {
   NewtonIterate at;
 
   explicit Prediction(const Bar& bar)
-      : problem{bar.solid.discretisation(), bar.start, bar.dt, bar.environment, 1e-3},
+      : problem{SolidDiscretisation::of(bar.solid), bar.start, bar.dt, bar.environment, 1e-3},
         potential(problem),
-        all(potential.islands(), bar.solid.discretisation().subdomains),
+        all(potential.islands(), SolidDiscretisation::of(bar.solid).subdomains),
         at(predict(potential, FiniteRotation(potential), all)) {
     ElasticResponse response;
     std::vector<double> value;

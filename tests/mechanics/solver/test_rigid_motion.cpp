@@ -141,12 +141,12 @@ TEST_CASE("a crumb of two nodes, which the nodal discretisation holds by its pen
     nodes.spacing.push_back(1);
     nodes.volume.push_back(1);
   }
-  graph.storage().resize(2);
-  graph.storage().add(nodes, 1u, 0u);
+  GraphStorage::of(graph).resize(2);
+  GraphStorage::of(graph).add(nodes, 1u, 0u);
   build_neighborhoods(nodes, graph, TriangleBvh());
   for (const double young : {1e4, 1e7, 1e10}) {
     Solid solid(nodes, graph, stiff(young, 0.3));
-    REQUIRE(solid.discretisation().mls.quality(0) == MomentQuality::singular);
+    REQUIRE(SolidDiscretisation::of(solid).mls.quality(0) == MomentQuality::singular);
     State state{std::vector<Vec3>(2, Vec3::Zero()), {Vec3::Zero(), Vec3(-0.05, 0.5, 0)}};
     Environment env;
     env.gravity.setZero();

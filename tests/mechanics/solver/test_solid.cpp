@@ -35,10 +35,11 @@ Bar bar(int nx, int ny, int nz, double jitter, std::uint64_t seed = 1) {
     b.nodes.spacing.push_back(h);
     b.nodes.volume.push_back(h * h * h);
   }
-  b.graph.storage().resize(b.nodes.size());
+  GraphStorage::of(b.graph).resize(b.nodes.size());
   for (std::uint32_t i = 0; i < b.nodes.size(); ++i)
     for (std::uint32_t j = 0; j < i; ++j)
-      if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i]) b.graph.storage().add(b.nodes, i, j);
+      if ((b.nodes.position[i] - b.nodes.position[j]).norm() < b.nodes.radius[i])
+        GraphStorage::of(b.graph).add(b.nodes, i, j);
   build_neighborhoods(b.nodes, b.graph, TriangleBvh());
   return b;
 }
@@ -174,10 +175,10 @@ TEST_CASE("few, coplanar and no neighbours give no NaN") {
   b.nodes.radius.push_back(0.5);
   b.nodes.spacing.push_back(0.25);
   b.nodes.volume.push_back(0.01);
-  b.graph.storage().resize(b.nodes.size());
+  GraphStorage::of(b.graph).resize(b.nodes.size());
   Solid solid(b.nodes, b.graph, material(ElasticModel::neo_hookean));
-  CHECK(solid.discretisation().mls.quality(0) == MomentQuality::poor);
-  CHECK(solid.discretisation().mls.quality(16) == MomentQuality::singular);
+  CHECK(SolidDiscretisation::of(solid).mls.quality(0) == MomentQuality::poor);
+  CHECK(SolidDiscretisation::of(solid).mls.quality(16) == MomentQuality::singular);
   State state{std::vector<Vec3>(17, Vec3::Zero()), std::vector<Vec3>(17, Vec3::Zero())};
   for (int i = 0; i < 5; ++i) solid.step_implicit(state, 0.02, Environment{});
   for (const auto& u : state.displacement) CHECK(u.allFinite());
@@ -193,8 +194,8 @@ void insert_beside(Bar& b, std::uint32_t donor, const Vec3& offset, std::optiona
   b.nodes.radius.push_back(double(b.nodes.radius[donor]));
   b.nodes.spacing.push_back(0.2);
   b.nodes.volume.push_back(double(b.nodes.volume[donor]));
-  b.graph.storage().resize(b.nodes.size());
-  if (sees) b.graph.storage().add(b.nodes, *sees, static_cast<std::uint32_t>(b.nodes.size() - 1));
+  GraphStorage::of(b.graph).resize(b.nodes.size());
+  if (sees) GraphStorage::of(b.graph).add(b.nodes, *sees, static_cast<std::uint32_t>(b.nodes.size() - 1));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Potentials and their sum against dense matrices.
-#include "mechanics/terms/potential.h"
+#include "kerf/potential.h"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>

@@ -205,6 +205,24 @@ TEST_CASE("values change at their time", "[hands]") {
   CHECK_THROWS_AS(run.blade(0), std::out_of_range);
 }
 
+TEST_CASE("a run that goes back has the values of that time", "[hands]") {
+  Scene scene = cube_scene();
+  scene.changes = {{.time = 0.25, .young = 6e4, .gravity = Vec3(0, 0, 2)}};
+  Simulation run(scene, make_block({1, 1, 1}, 0.25));
+  for (int i = 0; i < 2; ++i) run.advance_frame();
+  const Body body = run.body();
+  const RunState state = run.state();
+  for (int i = 0; i < 6; ++i) run.advance_frame();
+  run.restore(Body(body), RunState(state));
+  CHECK(run.scene().gravity == scene.gravity);
+  Simulation other(scene, body, state);
+  for (int i = 0; i < 5; ++i) {
+    run.advance_frame();
+    other.advance_frame();
+    CHECK(bytes(run) == bytes(other));
+  }
+}
+
 TEST_CASE("a change of a run goes before the scene's later ones", "[hands]") {
   Scene scene = cube_scene();
   scene.material.damping = 0;

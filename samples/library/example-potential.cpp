@@ -33,7 +33,7 @@ class Springs : public geo::Potential {
 int main() {
   const geo::TriangleMesh block = geo::make_block({1, 1, 2}, 0.5);
   const geo::Body body = geo::build_body(geo::Complex::from_skin(block), geo::sample_nodes(block, {.count = 200}));
-  geo::Solid solid(body, geo::Material{.young = 1e4});
+  geo::Solid solid(body, geo::Material{.young = 1e4, .damping = 4});
   const std::size_t n = body.nodes.size();
   geo::State state{std::vector<geo::Vec3>(n, geo::Vec3::Zero()), std::vector<geo::Vec3>(n, geo::Vec3::Zero())};
 
@@ -45,7 +45,7 @@ int main() {
     if (body.nodes.position[i].z() > 1.7) springs.add(i);
   }
   environment.contact = {&springs};
-  for (int step = 0; step < 20; ++step) solid.step_implicit(state, 1.0 / 24, environment);
+  for (int step = 0; step < 60; ++step) solid.step_implicit(state, 1.0 / 24, environment);
 
   double top = 0;
   for (std::size_t i = 0; i < n; ++i)

@@ -122,7 +122,8 @@ void measure_rows(const GraphCase& c, const Options& options, Figures& figures) 
   if (n <= 200000) {
     // As ours from the graph, which keeps no lengths; but to rows that are not packed and put away
     // yet.
-    mfw = least([] {}, [&] { geo::modified_floyd_warshall(geo::edge_lengths(c.nodes, GraphStorage::of(edges))); }, 3);
+    mfw = least([] {}, [&] { geo::modified_floyd_warshall(geo::edge_lengths(c.nodes, geo::GraphStorage::of(edges))); },
+                3);
   }
 
   const double speedup = threads_speedup([&] { geo::build_neighborhoods(c.nodes, graph, nothing); }, reset);

@@ -146,7 +146,7 @@ class BondLoads::Surroundings {
 };
 
 BondLoads::BondLoads(const Body& body, const Solid& solid, const GluedBonds& glued) : walls_(glued.bonds.size()) {
-  const Surroundings surroundings(body, solid.discretisation().points);
+  const Surroundings surroundings(body, SolidDiscretisation::of(solid).points);
   std::vector<std::vector<NearPoint>> near(walls_.size());
   if (!surroundings.places().empty())
     parallel_for(walls_.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -175,7 +175,7 @@ BondLoads::BondLoads(const Body& body, const Solid& solid, const GluedBonds& glu
 }
 
 std::vector<BondLoads::PointStress> BondLoads::stresses(const Solid& solid, const State& state) const {
-  const MaterialPoints& all = solid.discretisation().points;
+  const MaterialPoints& all = SolidDiscretisation::of(solid).points;
   std::vector<PointStress> result(points_.size());
   parallel_for(points_.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::uint32_t block = ~0u;

@@ -1,5 +1,8 @@
 // begin_run() of kerf/simulation.h. Order: sample and build the body, insert the prescored cracks,
 // then assign velocities. Nodes that a crack inserts belong to the body of their donor.
+#include <algorithm>
+
+#include "geometry/bvh.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/simulation.h"
@@ -22,27 +25,51 @@ void refine(TriangleMesh& walls, const Body& body) {
   refine_walls(walls, TriangleBvh(skin), body.finest_spacing, body.finest_spacing);
 }
 
-// The crack of a sheet; throws as insert_sheet(). Where it is glued, only its outline on the skin is
-// inserted, and its bonds are appended to the run's.
-CrackEdit sheet_edit(const SceneScore& score, const Scene& scene, std::int32_t crack, RunStart& run) {
+// Forgets the bonds from `first` on that are not in a body: walls may reach into others.
+void keep_within(const TriangleMesh& body, std::size_t first, GluedBonds& glued) {
+  std::vector<std::array<Vec3, 3>> skin;
+  for (const auto& [a, b, c] : body.triangles) skin.push_back({body.vertices[a], body.vertices[b], body.vertices[c]});
+  const TriangleBvh own(skin);
+  const auto is_elsewhere = [&](const GluedBond& bond) {
+    const auto& [a, b, c] = bond.faces.at(0);
+    return !own.inside((glued.points[a] + glued.points[b] + glued.points[c]) / 3);
+  };
+  auto& bonds = glued.bonds;
+  bonds.erase(std::remove_if(bonds.begin() + static_cast<std::ptrdiff_t>(first), bonds.end(), is_elsewhere),
+              bonds.end());
+}
+
+// Where the cracks of a scene go.
+struct Prescoring {
+  const Scene& scene;
+  const PlacedModels& models;
+  RunStart& run;
+};
+
+// The crack of a sheet; throws as insert_sheet(). Where it is glued, only its outline on the skin
+// is inserted, and its bonds are appended to the run's.
+CrackEdit sheet_edit(const Prescoring& to, const SceneScore& score, std::int32_t crack) {
   TriangleMesh walls;
   walls.vertices = score.front.steps[0];
   walls.triangles = score.front.triangles;
-  if (score.glue) refine(walls, run.body);
-  Complex scored = run.body.surface;
+  if (score.glue) refine(walls, to.run.body);
+  Complex scored = to.run.body.surface;
   insert_sheet(scored, walls, crack);
   if (score.glue) {
-    GluedBonds& glued = run.state.glued;
+    GluedBonds& glued = to.run.state.glued;
     const std::size_t first = glued.bonds.size();
     glue_crack(scored, crack, glued);
-    set_strength(glued, first, *score.glue, scene.fracture.seed, scored.extent().diagonal(), score.body);
+    keep_within(to.models.bodies.at(score.body), first, glued);
+    set_strength(glued, first, *score.glue, to.scene.fracture.seed, scored.extent().diagonal(), score.body);
   }
   return
       [scored = std::move(scored)](Complex& complex, CrackStats*) { return complex.apply(complex.difference(scored)); };
 }
 
 // Inserts the scene's prescored cracks: fronts step by step, sheets whole.
-void prescore(const Scene& scene, RunStart& run, const Progress& progress) {
+void prescore(const Prescoring& to, const Progress& progress) {
+  const Scene& scene = to.scene;
+  RunStart& run = to.run;
   CrackWriter writer(run.body, run.state.body_index, {.seed = scene.seed});
   FrameStats unused;
   for (std::size_t s = 0; s < scene.scores.size(); ++s) {
@@ -50,7 +77,7 @@ void prescore(const Scene& scene, RunStart& run, const Progress& progress) {
     const std::int32_t crack = next_crack(run.body.surface, run.state);
     if (front.is_sheet()) {
       report(progress, "prescoring", s, scene.scores.size());
-      if (!writer.write(sheet_edit(scene.scores[s], scene, crack, run), unused))
+      if (!writer.write(sheet_edit(to, scene.scores[s], crack), unused))
         throw GeometryError("the prescored sheet '" + front.name + "' cannot be inserted");
       continue;
     }
@@ -85,7 +112,7 @@ RunStart begin_run(const Scene& scene, const PlacedModels& models, const Progres
   RunStart run;
   run.body = build_scene_body(scene, models, run.state.body_index, progress);
   run.state.fronts.resize(scene.blades.size());
-  prescore(scene, run, progress);
+  prescore({.scene = scene, .models = models, .run = run}, progress);
   begin_motion(scene, run.body, run.state);
   return run;
 }

@@ -1,5 +1,5 @@
-// Bonds that open together cost one update of the body. What makes the surface cross itself is found
-// by halving.
+// Bonds that open together cost one update of the body. The bond that would make the surface cross
+// itself is found by halving.
 #include "simulation/bond_breaker.h"
 
 #include <algorithm>

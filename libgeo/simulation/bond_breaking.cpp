@@ -41,7 +41,7 @@ std::vector<std::uint32_t> BondBreaking::overloaded(const GluedBonds& glued, std
   std::vector<double> ratio(loads.size(), 0);
   for (std::uint32_t b = 0; b < loads.size(); ++b)
     if (!glued.bonds[b].broken) ratio[b] = loads[b].effective(friction) / limit(glued, b);
-  // Of equal ratios the lower bond comes first.
+  // The lower bond comes first where ratios are equal.
   const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
     return ratio[a] != ratio[b] ? ratio[a] > ratio[b] : a < b;
   };

@@ -24,8 +24,8 @@ class BondBreaking {
   double limit(const GluedBonds& glued, std::uint32_t bond) const;
 
   /// The bonds that break now, the most loaded one first: those whose traction exceeds their limit,
-  /// and by more than that of each neighbour. A neighbour is asked again when the stress around the
-  /// opened wall has fallen. `friction`: see BondLoad::effective().
+  /// and by more than that of each neighbour. A neighbour may break later, when the stress around
+  /// the opened wall has fallen. `friction`: see BondLoad::effective().
   std::vector<std::uint32_t> overloaded(const GluedBonds& glued, std::span<const BondLoad> loads,
                                         double friction) const;
 

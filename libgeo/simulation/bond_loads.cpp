@@ -123,7 +123,7 @@ class BondLoads::Surroundings {
   }
 
  private:
-  // Of x from the faces; `reach` where it is farther, or does not see them.
+  // The distance of x from the faces; `reach` where it is farther, or does not see them.
   double distance_seen(const Vec3& x, const GluedBond& bond, const std::vector<Vec3>& corners, double reach) const {
     double nearest = reach;
     Vec3 seen_from;

@@ -18,8 +18,8 @@ struct BondLoad {
   double bending = 0;  ///< what bending adds to the normal traction where it adds most; not negative
 
   /// The traction that is compared with the strength: √(σ² + τ²) for a greatest tension σ and a
-  /// shear τ. Under pressure, friction takes a part of the shear (Camacho and Ortiz 1996, with equal
-  /// weights of tension and shear). `friction`: Coulomb's coefficient.
+  /// shear τ. Under pressure, friction takes a part of the shear (Camacho and Ortiz 1996, with
+  /// equal weights of tension and shear). `friction`: Coulomb's coefficient.
   double effective(double friction) const;
 };
 
@@ -36,7 +36,7 @@ class BondLoads {
   std::vector<BondLoad> at(const Solid& solid, const State& state, const GluedBonds& glued) const;
 
  private:
-  // What a point contributes to the traction at a wall's centroid, and to its gradient along the
+  // The share of a point in the traction at a wall's centroid, and to its gradient along the
   // wall.
   struct Share {
     std::uint32_t point;  // index into points_

@@ -31,9 +31,11 @@ void NodeLoads::begin_step(const TimeStep& step, const Solid& solid, State& moti
 // The wedges of thick blades are where their cut is: the edge cuts on at the end of the step.
 void NodeLoads::add_wedges(double time, const Solid& solid, const State& motion) {
   wedges_ = {};
-  const BladeNodes nodes{body_.nodes.position, motion.displacement, body_.nodes.radius,
-                         [&](std::size_t i) { return surface_distance(body_, NodeId(i)); },
-                         [&](std::size_t i) { return solid.mass(NodeId(i)); }};
+  const BladeNodes nodes{.position = body_.nodes.position,
+                         .displacement = motion.displacement,
+                         .radius = body_.nodes.radius,
+                         .surface = [&](std::size_t i) { return surface_distance(body_, NodeId(i)); },
+                         .mass = [&](std::size_t i) { return solid.mass(NodeId(i)); }};
   for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
     const Blade& blade = scene_.blades[b];
     if (!(blade.thickness > 0) || !blade.active(time)) continue;

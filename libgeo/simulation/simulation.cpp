@@ -36,7 +36,7 @@ struct Simulation::Impl {
 };
 
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
-    : Simulation(scene, PlacedModels{solid, {solid}}, progress) {}
+    : Simulation(scene, PlacedModels{.all = solid, .bodies = {solid}}, progress) {}
 
 Simulation::Simulation(const Scene& scene, const PlacedModels& models, const Progress& progress) {
   RunStart run = begin_run(scene, models, progress);

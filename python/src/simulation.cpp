@@ -235,7 +235,7 @@ geo::Scene Simulation::recording() {
   };
   for (auto& body : all.bodies) make_absolute(body.mesh);
   for (auto& obstacle : all.obstacles) make_absolute(obstacle.file);
-  for (SceneScoreFile& score : all.score_files) make_absolute(score.file);
+  for (geo::SceneScoreFile& score : all.score_files) make_absolute(score.file);
   std::vector<int> frames;
   std::set_union(all.checkpoints.begin(), all.checkpoints.end(), checkpoints_.begin(), checkpoints_.end(),
                  std::back_inserter(frames));

@@ -62,7 +62,7 @@ TEST_CASE("glued walls leave a whole model, and opened in any order the pieces o
     INFO("KERF_CASE=" << seed);
     Random random(seed);
     Scored s = random_score(random);
-    REQUIRE(check_complex(s.whole, true).good());
+    REQUIRE(check_complex(s.whole, SelfIntersections::find).good());
     REQUIRE(find_pieces(s.whole).count == 1);
     double area = 0;
     for (const GluedBond& bond : s.glued.bonds) area += bond.area;
@@ -80,7 +80,7 @@ TEST_CASE("glued walls leave a whole model, and opened in any order the pieces o
       CHECK(delta.removed_faces.empty());
       begin = end;
     }
-    CHECK(check_complex(s.whole, true).good());
+    CHECK(check_complex(s.whole, SelfIntersections::find).good());
     check_same_pieces(s.whole, s.cut);
     CHECK(crack_area(s.whole) == Approx(area));
   }
@@ -101,7 +101,7 @@ TEST_CASE("a blade may cut glued walls before they open", "[glue]") {
     insert_sheet(s.whole, plane, 1);
     insert_sheet(s.whole, sheet_of(s.glued, all), 2);
     insert_sheet(s.cut, plane, 2);
-    CHECK(check_complex(s.whole, true).good());
+    CHECK(check_complex(s.whole, SelfIntersections::find).good());
     check_same_pieces(s.whole, s.cut);
   }
 }

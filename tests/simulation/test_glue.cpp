@@ -187,7 +187,7 @@ TEST_CASE(
       broken += stats.fracture.broken;
       refused += stats.refused;
       REQUIRE(check_body(sim.body()).first_problem == "");
-      REQUIRE(check_complex(sim.body().surface, true).good());
+      REQUIRE(check_complex(sim.body().surface, SelfIntersections::find).good());
       REQUIRE(count_crossings(sim.surface()) == 0);
       if (i + 1 == frames / 2) {
         half = bytes(sim);

@@ -54,10 +54,11 @@ std::string counts(const geo::FrameStats& stats) {
   const auto of = [](const char* name, std::size_t n) { return std::string("\"") + name + "\":" + std::to_string(n); };
   return of("steps", stats.steps) + "," + of("newton", stats.newton) + "," + of("cg", stats.cg) + "," +
          of("fronts", stats.fronts) + "," + of("cracks_begun", stats.fracture.begun + stats.fracture.divided) + "," +
-         of("bonds_broken", stats.fracture.broken) + "," + of("refused", stats.refused) + "," + of("triangles_cut", stats.split.crack.triangles_cut) + "," +
-         of("edges_cut", stats.split.edges_cut) + "," + of("nodes_updated", stats.split.nodes_updated) + "," +
-         of("nodes_added", stats.split.nodes_added) + "," + of("touching", stats.contact.touching) + "," +
-         of("in_zones", stats.contact.in_zones) + "," + of("held", stats.contact.held);
+         of("bonds_broken", stats.fracture.broken) + "," + of("refused", stats.refused) + "," +
+         of("triangles_cut", stats.split.crack.triangles_cut) + "," + of("edges_cut", stats.split.edges_cut) + "," +
+         of("nodes_updated", stats.split.nodes_updated) + "," + of("nodes_added", stats.split.nodes_added) + "," +
+         of("touching", stats.contact.touching) + "," + of("in_zones", stats.contact.in_zones) + "," +
+         of("held", stats.contact.held);
 }
 
 std::string line_of(const FrameOutcome& o, std::size_t crossings) {

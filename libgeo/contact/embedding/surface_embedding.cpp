@@ -85,8 +85,9 @@ class SurfaceEmbedder {
     return {};
   }
 
-  // A side that remains keeps the positions of its corners. New faces may join vertices of one site
-  // that had positions of their own: cracks that only touched there. Their mean is the new position.
+  // A side that remains keeps the positions of its corners. New faces may join vertices of one
+  // site that had positions of their own: cracks that only touched there. Their mean is the new
+  // position.
   void place_on_remaining_sides() {
     for (const auto v : in_.crack.new_surface_vertices)
       if (k_.alive(v)) place_on_sides_at(v);

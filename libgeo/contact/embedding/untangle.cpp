@@ -147,10 +147,8 @@ void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle&
     // Along a direction that noise has turned, large triangles overlap by far more than they cross.
     offer_features(reference, now, axis);
     if (axis.normal.isZero(0)) continue;
-    out.push_back({.a = a,
-                   .b = b,
-                   .normal = axis.normal,
-                   .separation = wanted_separation(reference, difference.norm(), in.gap)});
+    out.push_back(
+        {.a = a, .b = b, .normal = axis.normal, .separation = wanted_separation(reference, difference.norm(), in.gap)});
   }
 }
 

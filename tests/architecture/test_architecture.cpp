@@ -35,6 +35,7 @@ const std::map<std::string, std::string> public_headers{
     {"error", "base"},
     {"export", "io"},
     {"files", "io"},
+    {"glue", "crack"},
     {"graph", "graph"},
     {"hierarchy", "surface"},
     {"indirect", "base"},

@@ -10,6 +10,7 @@
 #include "kerf/error.h"
 #include "kerf/export.h"
 #include "kerf/files.h"
+#include "kerf/glue.h"
 #include "kerf/graph.h"
 #include "kerf/hierarchy.h"
 #include "kerf/jobs.h"

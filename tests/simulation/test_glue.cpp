@@ -1,13 +1,19 @@
 // Glued scores in a run: bonds break at their strength, and whatever breaks keeps every invariant.
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 
 #include "base/random.h"
 #include "cases.h"
 #include "kerf/check.h"
 #include "kerf/contact.h"
+#include "kerf/files.h"
 #include "kerf/parallel.h"
 #include "kerf/pieces.h"
 #include "kerf/score.h"
@@ -206,4 +212,32 @@ TEST_CASE(
   }
   CHECK(broken > 20);
   CHECK(pieces > 8);
+}
+
+TEST_CASE("a scene names the strength of a score's walls, and is written so", "[glue]") {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("kerf-glue-" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const Front wall = plane_at({0, 0, 1}, {0, 0, 1}),
+              moving{.name = "front", .steps = {{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {1, 1, 0}}}};
+  for (const auto& [name, front] : {std::pair("wall.front", wall), std::pair("moving.front", moving)}) {
+    std::ofstream out(folder / name);
+    write_fronts(out, {front});
+  }
+  const auto scene_of = [&](const std::string& score) {
+    return parse_scene("[body]\nmesh = 'a.ply'\n[[score]]\n" + score, "s.toml", {}, folder.string());
+  };
+  const Scene glued = scene_of("file = 'wall.front'\nstrength = 2e5\ntoughness = 30\nvariation = 0.1\n");
+  REQUIRE(glued.scores.size() == 1);
+  const Strength expected{.strength = 2e5, .toughness = 30, .variation = 0.1};
+  CHECK(glued.scores[0].glue == expected);
+  std::ostringstream text;
+  write_scene(text, glued, folder.string());
+  CHECK(parse_scene(text.str(), "s.toml", {}, folder.string()).scores[0].glue == expected);
+  CHECK_FALSE(scene_of("file = 'wall.front'\n").scores[0].glue);
+  CHECK_THROWS_WITH(scene_of("file = 'wall.front'\ntoughness = 30\n"), Catch::Contains("toughness"));
+  CHECK_THROWS_WITH(scene_of("file = 'moving.front'\nstrength = 1\n"),
+                    Catch::Contains("a front cannot be glued; give a sheet, or leave out 'strength'"));
+  CHECK_FALSE(scene_of("file = 'moving.front'\n").scores[0].glue);
+  fs::remove_all(folder);
 }

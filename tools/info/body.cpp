@@ -29,6 +29,12 @@ void report_motion(const geo::Checkpoint& checkpoint, Report& report) {
                      rounded(checkpoint.state.time) + " s.";
   report.add("frame", static_cast<std::size_t>(checkpoint.state.frame));
   report.add_number("time", checkpoint.state.time);
+  const auto& bonds = checkpoint.state.glued.bonds;
+  if (!bonds.empty()) {
+    const auto broken = std::count_if(bonds.begin(), bonds.end(), [](const geo::GluedBond& b) { return b.broken; });
+    report.add("bonds", bonds.size());
+    report.add("bonds_broken", static_cast<std::size_t>(broken));
+  }
   report.add_number("displacement_max", displacement);
   report.add_number("speed_max", speed);
 }

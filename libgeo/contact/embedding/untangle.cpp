@@ -1,6 +1,6 @@
-// Projection of separation constraints, Gauss–Seidel (position-based dynamics). The axis is the
-// difference of closest points in the material, mapped by F⁻ᵀ, or a normal of features that
-// separate the two there: the one that moves them least. Crossings are then searched again.
+// Projection of separation constraints, Gauss–Seidel (position-based dynamics), then a new search.
+// The axis is the difference of closest points in the material, mapped by F⁻ᵀ. Where that fails,
+// all begins again, and normals of features that separate the two there are axes, too.
 #include "contact/embedding/untangle.h"
 
 #include <Eigen/LU>
@@ -116,23 +116,30 @@ double wanted_separation(const SimplexPair& reference, double distance, double g
   return std::min(gap, 0.25 * room);
 }
 
-// Appends the constraints of a pair of triangles of representatives. `start`: the given positions.
-// `both_old`: neither triangle is fresh.
-void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle& t, bool both_old,
-                     const std::vector<Vec3>& start, const std::vector<Vec3>& positions,
-                     std::vector<SeparationConstraint>& out) {
+// Which directions may separate two triangles.
+enum class Axes { of_distance, of_distance_and_features };
+
+// Positions of surface vertices: as given, and after some sweeps.
+struct Positions {
+  const std::vector<Vec3>&start, &now;
+};
+
+// Appends the constraints of a pair of triangles of representatives. `both_old`: neither triangle
+// is fresh.
+void add_constraints(const UntangleInput& in, Axes axes, const Triangle& s, const Triangle& t, bool both_old,
+                     const Positions& at, std::vector<SeparationConstraint>& out) {
   std::pair<Simplex, Simplex> pairs[2];
   const int count = disjoint_subsimplices(s, t, pairs);
   for (int i = 0; i < count; ++i) {
     const auto& [a, b] = pairs[i];
     const auto pair_at = [&](const auto& position) {
-      SimplexPair at{.a_size = a.size, .b_size = b.size};
-      for (int k = 0; k < a.size; ++k) at.a[std::size_t(k)] = position(a.v[k]);
-      for (int k = 0; k < b.size; ++k) at.b[std::size_t(k)] = position(b.v[k]);
-      return at;
+      SimplexPair corners{.a_size = a.size, .b_size = b.size};
+      for (int k = 0; k < a.size; ++k) corners.a[std::size_t(k)] = position(a.v[k]);
+      for (int k = 0; k < b.size; ++k) corners.b[std::size_t(k)] = position(b.v[k]);
+      return corners;
     };
-    const SimplexPair reference = pair_at([&](std::uint32_t v) { return both_old ? start[v] : in.rest(v); }),
-                      now = pair_at([&](std::uint32_t v) { return positions[v]; });
+    const SimplexPair reference = pair_at([&](std::uint32_t v) { return both_old ? at.start[v] : in.rest(v); }),
+                      now = pair_at([&](std::uint32_t v) { return at.now[v]; });
     const Vec3 difference = closest_points(reference.a.data(), a.size, reference.b.data(), b.size).difference;
     SeparatingAxis axis;
     if (both_old) {
@@ -145,17 +152,16 @@ void add_constraints(const UntangleInput& in, const Triangle& s, const Triangle&
       axis.offer(mean.inverse().transpose() * difference, now);
     }
     // Along a direction that noise has turned, large triangles overlap by far more than they cross.
-    offer_features(reference, now, axis);
+    if (axes == Axes::of_distance_and_features) offer_features(reference, now, axis);
     if (axis.normal.isZero(0)) continue;
     out.push_back(
         {.a = a, .b = b, .normal = axis.normal, .separation = wanted_separation(reference, difference.norm(), in.gap)});
   }
 }
 
-}  // namespace
-
-std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& positions,
-                                   std::vector<std::uint8_t>& marked) {
+// untangle() with these axes.
+std::vector<TrianglePair> untangle_along(Axes axes, const UntangleInput& in, std::vector<Vec3>& positions,
+                                         std::vector<std::uint8_t>& marked) {
   // Limits of effort: searches for crossings, and sweeps over the constraints after each search.
   // Larger: more attempts before the crack step is refused.
   constexpr int max_rounds = 16, max_sweeps = 4;
@@ -182,8 +188,9 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
     }
     for (const auto& pair : crossings)
       if (known.insert(pair).second)
-        add_constraints(in, represented(pair.first), represented(pair.second),
-                        !in.fresh[pair.first] && !in.fresh[pair.second], start, positions, constraints);
+        add_constraints(in, axes, represented(pair.first), represented(pair.second),
+                        !in.fresh[pair.first] && !in.fresh[pair.second], {.start = start, .now = positions},
+                        constraints);
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
       bool any = false;
       for (const SeparationConstraint& c : constraints) any |= project(c, positions, moved);
@@ -195,6 +202,19 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
       if (std::any_of(corners.begin(), corners.end(), [&](auto v) { return moved[v]; })) marked[t] = 1;
     }
   }
+}
+
+}  // namespace
+
+std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& positions,
+                                   std::vector<std::uint8_t>& marked) {
+  const std::vector<Vec3> given = positions;
+  const std::vector<std::uint8_t> given_marks = marked;
+  const std::vector<TrianglePair> left = untangle_along(Axes::of_distance, in, positions, marked);
+  if (left.empty()) return left;
+  positions = given;
+  marked = given_marks;
+  return untangle_along(Axes::of_distance_and_features, in, positions, marked);
 }
 
 }  // namespace geo

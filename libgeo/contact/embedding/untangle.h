@@ -20,10 +20,11 @@ struct UntangleInput {
 /// Moves vertices until no triangle marked in `marked` crosses another, or until several rounds
 /// bring no progress. Crossing triangles are pushed apart by equal shares. The direction is one
 /// that separates them in the material: that of their distance, transformed by the deformation
-/// gradient, or the normal of features, whichever moves them least. Two triangles that are not
-/// fresh did not cross at the given positions, so directions that separate them there are used:
-/// closed sheets are one place in the material. Coincident vertices stay coincident. Returns the
-/// pairs that still cross, and marks all triangles whose vertices have moved.
+/// gradient. Where that leaves crossings, a second attempt takes the normal of features where it
+/// moves them less. Two triangles that are not fresh did not cross at the given positions, so
+/// directions that separate them there are used: closed sheets are one place in the material.
+/// Coincident vertices stay coincident. Returns the pairs that still cross, and marks all triangles
+/// whose vertices have moved.
 std::vector<TrianglePair> untangle(const UntangleInput& input, std::vector<Vec3>& positions,
                                    std::vector<std::uint8_t>& marked);
 

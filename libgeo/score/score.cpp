@@ -17,21 +17,15 @@
 #include "score/join.h"
 #include "score/partial.h"
 #include "score/patterns.h"
+#include "surface/skin.h"
 
 namespace geo {
 namespace {
 
-std::vector<std::array<Vec3, 3>> skin_of(const Complex& model) {
-  std::vector<std::array<Vec3, 3>> skin;
-  for (std::uint32_t f = 0; f < model.face_count(); ++f)
-    if (model.alive(FaceId(f)) && model.face(FaceId(f)).crack == 0) skin.push_back(model.corners(FaceId(f)));
-  return skin;
-}
-
 class Scoring {
  public:
   Scoring(const Complex& model, const ScoreOptions& options, const Progress& progress)
-      : model_(model), o_(options), progress_(progress), skin_(skin_of(model)) {}
+      : model_(model), o_(options), progress_(progress), skin_(corners_of(skin_of(model))) {}
 
   Score run() {
     Try now{o_.pieces, o_.pattern.seed};

@@ -11,6 +11,7 @@
 #include "simulation/crack_writer.h"
 #include "simulation/next_crack.h"
 #include "simulation/scene_body.h"
+#include "surface/skin.h"
 
 namespace geo {
 namespace {
@@ -18,18 +19,13 @@ namespace {
 // Divides the walls of a sheet so that they can follow the deformed material where they open:
 // triangles as large as cells cannot.
 void refine(TriangleMesh& walls, const Body& body) {
-  const Complex& complex = body.surface;
-  std::vector<std::array<Vec3, 3>> skin;
-  for (std::uint32_t f = 0; f < complex.face_count(); ++f)
-    if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack == 0) skin.push_back(complex.corners(FaceId(f)));
-  refine_walls(walls, TriangleBvh(skin), body.finest_spacing, body.finest_spacing);
+  const TriangleBvh skin(corners_of(skin_of(body.surface)));
+  refine_walls(walls, skin, body.finest_spacing, body.finest_spacing);
 }
 
 // Forgets the bonds from `first` on that are not in a body: walls may reach into others.
 void keep_within(const TriangleMesh& body, std::size_t first, GluedBonds& glued) {
-  std::vector<std::array<Vec3, 3>> skin;
-  for (const auto& [a, b, c] : body.triangles) skin.push_back({body.vertices[a], body.vertices[b], body.vertices[c]});
-  const TriangleBvh own(skin);
+  const TriangleBvh own(corners_of(body));
   const auto is_elsewhere = [&](const GluedBond& bond) {
     const auto& [a, b, c] = bond.faces.at(0);
     return !own.inside((glued.points[a] + glued.points[b] + glued.points[c]) / 3);

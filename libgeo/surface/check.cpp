@@ -13,6 +13,7 @@
 #include "kerf/error.h"
 #include "surface/radial_edge.h"
 #include "surface/shells.h"
+#include "surface/skin.h"
 
 namespace geo {
 namespace {
@@ -311,18 +312,6 @@ void check_face(const Complex& k, std::uint32_t f, SurfaceReport& report) {
       }
     }
   }
-}
-
-// The skin alone, each of its vertices once: the uncut surface.
-TriangleMesh skin_of(const Complex& k) {
-  TriangleMesh skin;
-  for (std::uint32_t v = 0; v < k.vertex_count(); ++v) skin.vertices.push_back(k.point(VertexId(v)));
-  for (std::uint32_t f = 0; f < k.face_count(); ++f) {
-    const auto& face = k.face(FaceId(f));
-    if (k.alive(FaceId(f)) && face.crack == 0)
-      skin.triangles.push_back({face.v[0].value, face.v[1].value, face.v[2].value});
-  }
-  return skin;
 }
 
 }  // namespace

@@ -4,20 +4,12 @@
 #include <utility>
 
 #include "body/crack_transaction.h"
+#include "body/cut_cube.h"
 #include "kerf/error.h"
-#include "kerf/mesh.h"
-#include "kerf/nodes.h"
 
 using namespace geo;
 
 namespace {
-
-Body cube() {
-  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
-  return build_body(Complex::from_skin(mesh), sample_nodes(mesh, {.spacing = 0.2}));
-}
-
-std::vector<Vec3> edge(double x) { return {{x, -0.3, 0.52}, {x, 1.3, 0.47}}; }
 
 bool are_equal(const Body& a, const Body& b) {
   const TriangleMesh s = a.surface.two_sided(), t = b.surface.two_sided();

@@ -1,23 +1,11 @@
 // Crack steps that a run makes, or refuses.
 #include <catch2/catch.hpp>
 
+#include "body/cut_cube.h"
 #include "kerf/error.h"
-#include "kerf/mesh.h"
-#include "kerf/nodes.h"
 #include "simulation/crack_writer.h"
 
 using namespace geo;
-
-namespace {
-
-Body cube() {
-  const TriangleMesh mesh = make_block({1, 1, 1}, 0.25);
-  return build_body(Complex::from_skin(mesh), sample_nodes(mesh, {.spacing = 0.2}));
-}
-
-std::vector<Vec3> edge(double x) { return {{x, -0.3, 0.52}, {x, 1.3, 0.47}}; }
-
-}  // namespace
 
 TEST_CASE("the writer makes steps of fronts and any other edit, and body indices follow") {
   Body body = cube(), other = body;

@@ -117,22 +117,27 @@ def is_block(listed, at):
     return listed[at - 1][1] in (")", "else", "do", "try", "const", "noexcept", "override", ";", "{", "}") if at else True
 
 
+def parameters_before(listed, at):
+    """The index of the parenthesis that opens the parameters before a brace; -1: none does."""
+    k = at - 1
+    while k > 0 and listed[k][1] != ")":
+        k -= 1
+    depth = 0
+    while k >= 0:
+        depth += (listed[k][1] == ")") - (listed[k][1] == "(")
+        if depth == 0:
+            break
+        k -= 1
+    return k
+
+
 def returned_types(listed):
     """(first token, last token, type) of the body of each function with a return type written before its name."""
     found = []
     for at, (_, word, _) in enumerate(listed):
         if word != "{" or at == 0 or listed[at - 1][1] not in (")", "const", "noexcept"):
             continue
-        k = at - 1
-        while k > 0 and listed[k][1] != ")":
-            k -= 1
-        depth = 0
-        while k >= 0:
-            depth += (listed[k][1] == ")") - (listed[k][1] == "(")
-            if depth == 0:
-                break
-            k -= 1
-        k -= 1
+        k = parameters_before(listed, at) - 1
         while k > 1 and listed[k - 1][1] == "::":
             k -= 2
         if k < 1 or listed[k][0] != "name" or listed[k - 1][0] != "name":
@@ -159,15 +164,7 @@ def heads_type(listed, at):
 
 def is_lambda(listed, at):
     """Whether the brace at this index is the body of a lambda: its parameters follow a capture."""
-    k = at - 1
-    while k > 0 and listed[k][1] != ")":
-        k -= 1
-    depth = 0
-    while k >= 0:
-        depth += (listed[k][1] == ")") - (listed[k][1] == "(")
-        if depth == 0:
-            break
-        k -= 1
+    k = parameters_before(listed, at)
     return k > 0 and listed[k - 1][1] == "]"
 
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "contact/detection/simplex.h"
 #include "geometry/distance.h"
@@ -41,33 +42,39 @@ bool project(const SeparationConstraint& c, std::vector<Vec3>& at, std::vector<s
   return true;
 }
 
-// The corners of two simplices.
+// Two simplices with points of their own: the first three are corners of a, the others of b.
 struct SimplexPair {
-  int a_size, b_size;
-  std::array<Vec3, 3> a{}, b{};
+  Simplex a, b;
+  std::array<Vec3, 6> at;
 
-  // min n · a − max n · b: how far apart they lie along a unit vector n.
-  double separation(const Vec3& n) const {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (int k = 0; k < a_size; ++k) least = std::min(least, n.dot(a[std::size_t(k)]));
-    for (int k = 0; k < b_size; ++k) most = std::max(most, n.dot(b[std::size_t(k)]));
-    return least - most;
-  }
+  const Vec3* corners_of_a() const { return at.data(); }
+  const Vec3* corners_of_b() const { return at.data() + 3; }
+  double separation(const Vec3& n) const { return separation_along(n, a, b, at); }
 };
+
+// The simplices of surface vertices a and b at `position` of these.
+template <class Position>
+SimplexPair pair_at(const Simplex& a, const Simplex& b, const Position& position) {
+  SimplexPair pair{.a = {.v = {0, 1, 2}, .size = a.size}, .b = {.v = {3, 4, 5}, .size = b.size}, .at = {}};
+  for (int k = 0; k < a.size; ++k) pair.at[pair.a.v[k]] = position(a.v[k]);
+  for (int k = 0; k < b.size; ++k) pair.at[pair.b.v[k]] = position(b.v[k]);
+  return pair;
+}
 
 // The axes of the separating-axis theorem: normals of triangles, products of edges; not unit
 // vectors. Equal places in the list stand for the same features at any positions.
-std::vector<Vec3> feature_axes(const SimplexPair& at) {
-  const auto edges = [](int size, const std::array<Vec3, 3>& p) {
+std::vector<Vec3> feature_axes(const SimplexPair& pair) {
+  const auto edges = [](int size, const Vec3* p) {
     std::vector<Vec3> result;
     if (size > 1) result.push_back(p[1] - p[0]);
     if (size > 2) result.insert(result.end(), {p[2] - p[1], p[0] - p[2]});
     return result;
   };
-  const std::vector<Vec3> of_a = edges(at.a_size, at.a), of_b = edges(at.b_size, at.b);
+  const std::vector<Vec3> of_a = edges(pair.a.size, pair.corners_of_a()),
+                          of_b = edges(pair.b.size, pair.corners_of_b());
   std::vector<Vec3> axes;
-  if (at.a_size == 3) axes.push_back(of_a[0].cross(of_a[1]));
-  if (at.b_size == 3) axes.push_back(of_b[0].cross(of_b[1]));
+  if (pair.a.size == 3) axes.push_back(of_a[0].cross(of_a[1]));
+  if (pair.b.size == 3) axes.push_back(of_b[0].cross(of_b[1]));
   for (const Vec3& p : of_a)
     for (const Vec3& q : of_b) axes.push_back(p.cross(q));
   return axes;
@@ -102,17 +109,17 @@ void offer_features(const SimplexPair& reference, const SimplexPair& now, Separa
 }
 
 // The height of a triangle, the length of an edge; infinite for a point.
-double least_extent(int size, const std::array<Vec3, 3>& p) {
-  if (size == 3) return height_of(p);
+double least_extent(int size, const Vec3* p) {
+  if (size == 3) return height_of({p[0], p[1], p[2]});
   return size == 2 ? (p[1] - p[0]).norm() : std::numeric_limits<double>::infinity();
 }
 
 // A quarter of the distance at the reference, at most the gap: less than the material allows. Of
 // the extents where they touch at the reference.
 double wanted_separation(const SimplexPair& reference, double distance, double gap) {
-  const double room =
-      distance > 0 ? distance
-                   : std::min(least_extent(reference.a_size, reference.a), least_extent(reference.b_size, reference.b));
+  const double room = distance > 0 ? distance
+                                   : std::min(least_extent(reference.a.size, reference.corners_of_a()),
+                                              least_extent(reference.b.size, reference.corners_of_b()));
   return std::min(gap, 0.25 * room);
 }
 
@@ -132,15 +139,10 @@ void add_constraints(const UntangleInput& in, Axes axes, const Triangle& s, cons
   const int count = disjoint_subsimplices(s, t, pairs);
   for (int i = 0; i < count; ++i) {
     const auto& [a, b] = pairs[i];
-    const auto pair_at = [&](const auto& position) {
-      SimplexPair corners{.a_size = a.size, .b_size = b.size};
-      for (int k = 0; k < a.size; ++k) corners.a[std::size_t(k)] = position(a.v[k]);
-      for (int k = 0; k < b.size; ++k) corners.b[std::size_t(k)] = position(b.v[k]);
-      return corners;
-    };
-    const SimplexPair reference = pair_at([&](std::uint32_t v) { return both_old ? at.start[v] : in.rest(v); }),
-                      now = pair_at([&](std::uint32_t v) { return at.now[v]; });
-    const Vec3 difference = closest_points(reference.a.data(), a.size, reference.b.data(), b.size).difference;
+    const SimplexPair reference = pair_at(a, b, [&](std::uint32_t v) { return both_old ? at.start[v] : in.rest(v); });
+    const SimplexPair now = pair_at(a, b, [&](std::uint32_t v) { return at.now[v]; });
+    const Vec3 difference =
+        closest_points(reference.corners_of_a(), a.size, reference.corners_of_b(), b.size).difference;
     SeparatingAxis axis;
     if (both_old) {
       axis.offer(difference, now);
@@ -159,37 +161,38 @@ void add_constraints(const UntangleInput& in, Axes axes, const Triangle& s, cons
   }
 }
 
-// untangle() with these axes.
-std::vector<TrianglePair> untangle_along(Axes axes, const UntangleInput& in, std::vector<Vec3>& positions,
+// A surface that crosses itself where it was given.
+struct Tangle {
+  const UntangleInput& in;
+  std::vector<std::uint32_t> representative;
+  std::vector<Vec3> given;           // positions
+  std::vector<std::uint8_t> marked;  // triangles
+  std::vector<TrianglePair> crossings;
+};
+
+// untangle() with these axes. `positions`, `marked`: as given.
+std::vector<TrianglePair> untangle_along(Axes axes, const Tangle& tangle, std::vector<Vec3>& positions,
                                          std::vector<std::uint8_t>& marked) {
   // Limits of effort: searches for crossings, and sweeps over the constraints after each search.
   // Larger: more attempts before the crack step is refused.
   constexpr int max_rounds = 16, max_sweeps = 4;
+  const UntangleInput& in = tangle.in;
   const ContactSurface& surface = in.surface;
-  const auto representative = coincident_representatives(surface.site, positions);
+  const auto& representative = tangle.representative;
   const auto represented = [&](std::size_t t) {
     const auto& [a, b, c] = surface.triangles[t];
     return Triangle{representative[a], representative[b], representative[c]};
   };
-  std::vector<Vec3> start;  // the given positions; empty while nothing has crossed
   std::set<TrianglePair> known;
-  std::size_t fewest = ~std::size_t(0);
+  std::size_t fewest = tangle.crossings.size();
   std::vector<SeparationConstraint> constraints;
-  std::vector<std::uint8_t> moved;
-  for (int round = 0;; ++round) {
-    const auto crossings = find_crossings(surface.triangles, positions, representative, true, &marked);
-    // In the second half of the rounds, gives up when crossings become more.
-    fewest = std::min(fewest, crossings.size());
-    if (crossings.empty() || round == max_rounds || (round >= max_rounds / 2 && crossings.size() > fewest))
-      return crossings;
-    if (start.empty()) {
-      start = positions;
-      moved.assign(positions.size(), 0);
-    }
+  std::vector<std::uint8_t> moved(positions.size(), 0);
+  std::vector<TrianglePair> crossings = tangle.crossings;
+  for (int round = 1;; ++round) {
     for (const auto& pair : crossings)
       if (known.insert(pair).second)
         add_constraints(in, axes, represented(pair.first), represented(pair.second),
-                        !in.fresh[pair.first] && !in.fresh[pair.second], {.start = start, .now = positions},
+                        !in.fresh[pair.first] && !in.fresh[pair.second], {.start = tangle.given, .now = positions},
                         constraints);
     for (int sweep = 0; sweep < max_sweeps; ++sweep) {
       bool any = false;
@@ -201,6 +204,11 @@ std::vector<TrianglePair> untangle_along(Axes axes, const UntangleInput& in, std
       const Triangle corners = represented(t);
       if (std::any_of(corners.begin(), corners.end(), [&](auto v) { return moved[v]; })) marked[t] = 1;
     }
+    crossings = find_crossings(surface.triangles, positions, representative, true, &marked);
+    // In the second half of the rounds, gives up when crossings become more.
+    fewest = std::min(fewest, crossings.size());
+    if (crossings.empty() || round == max_rounds || (round >= max_rounds / 2 && crossings.size() > fewest))
+      return crossings;
   }
 }
 
@@ -208,13 +216,19 @@ std::vector<TrianglePair> untangle_along(Axes axes, const UntangleInput& in, std
 
 std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& positions,
                                    std::vector<std::uint8_t>& marked) {
-  const std::vector<Vec3> given = positions;
-  const std::vector<std::uint8_t> given_marks = marked;
-  const std::vector<TrianglePair> left = untangle_along(Axes::of_distance, in, positions, marked);
+  auto representative = coincident_representatives(in.surface.site, positions);
+  auto crossings = find_crossings(in.surface.triangles, positions, representative, true, &marked);
+  if (crossings.empty()) return crossings;
+  const Tangle tangle{.in = in,
+                      .representative = std::move(representative),
+                      .given = positions,
+                      .marked = marked,
+                      .crossings = std::move(crossings)};
+  const std::vector<TrianglePair> left = untangle_along(Axes::of_distance, tangle, positions, marked);
   if (left.empty()) return left;
-  positions = given;
-  marked = given_marks;
-  return untangle_along(Axes::of_distance_and_features, in, positions, marked);
+  positions = tangle.given;
+  marked = tangle.marked;
+  return untangle_along(Axes::of_distance_and_features, tangle, positions, marked);
 }
 
 }  // namespace geo

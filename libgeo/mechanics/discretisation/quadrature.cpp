@@ -10,6 +10,7 @@
 
 #include "base/random.h"
 #include "sampling/walk.h"
+#include "surface/skin.h"
 
 namespace geo {
 namespace {
@@ -123,16 +124,6 @@ double exact_sum(const std::vector<double>& volumes) {
   Wide sum = 0;
   for (const double v : volumes) sum += static_cast<Wide>(std::ldexp(v, 90 - exponent));
   return std::ldexp(static_cast<double>(sum), exponent - 90);
-}
-
-// The faces of the surface that are not crack faces.
-TriangleMesh skin_of(const Complex& surface) {
-  TriangleMesh skin;
-  for (std::uint32_t v = 0; v < surface.vertex_count(); ++v) skin.vertices.push_back(surface.point(VertexId(v)));
-  for (std::uint32_t f = 0; f < surface.face_count(); ++f)
-    if (const auto& face = surface.face(FaceId(f)); face.alive && face.crack == 0)
-      skin.triangles.push_back({face.v[0].value, face.v[1].value, face.v[2].value});
-  return skin;
 }
 
 }  // namespace

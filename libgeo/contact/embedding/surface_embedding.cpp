@@ -221,7 +221,9 @@ class SurfaceEmbedder {
     return result;
   }
 
-  // Vertices inside the material continue the deformed surface.
+  // Vertices inside the material continue the deformed surface. One at a site that has a placed
+  // vertex, where a crack touches another sheet at a point, coincides with it: apart by rounding,
+  // the triangles around both would cross.
   void place_inside() {
     std::vector<std::uint8_t> is_new(k_.face_count(), 0);
     for (const FaceId f : in_.crack.new_crack_faces) is_new[f.index()] = 1;
@@ -237,8 +239,32 @@ class SurfaceEmbedder {
       for (std::size_t i = begin; i < end; ++i) found[i] = continued_surface(VertexId(waiting[first[i]].first), is_new);
     });
     first.push_back(waiting.size());
-    for (std::size_t i = 0; i < found.size(); ++i)
-      for (auto j = first[i]; j < first[i + 1]; ++j) place(waiting[j].second, found[i].first, found[i].second);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const SurfaceVertexId touched = nearest_placed(VertexId(waiting[first[i]].first), found[i].first);
+      const auto [at, reference] =
+          touched.valid() ? std::pair(Vec3(result_.positions[touched.index()]), reference_[touched.index()]) : found[i];
+      for (auto j = first[i]; j < first[i + 1]; ++j) place(waiting[j].second, at, reference);
+    }
+  }
+
+  // The placed surface vertex of a site that is nearest to x: the one in whose material x is. None
+  // where no vertex of the site is placed.
+  SurfaceVertexId nearest_placed(VertexId site, const Vec3& x) const {
+    SurfaceVertexId nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (const FaceId f : k_.faces_at(site)) {
+      const auto& corners = k_.face(f).v;
+      const int c = static_cast<int>(std::find(corners.begin(), corners.end(), site) - corners.begin());
+      for (int which = 0; which < 2; ++which) {
+        if (!k_.has({f, which})) continue;
+        const SurfaceVertexId v = k_.surface_vertex({f, which}, c);
+        const double distance = (result_.positions[v.index()] - x).norm();
+        if (!placed_[v.index()] || !(distance < least)) continue;
+        least = distance;
+        nearest = v;
+      }
+    }
+    return nearest;
   }
 
   // The position of a site inside the material, and its reference: the nearest visible point's.

@@ -27,9 +27,12 @@ void set_original_nodes(Body& body, std::uint32_t count) {
 
 namespace {
 
+// Volumes are given in multiples of 2⁻⁴⁰ of the largest: no sum is rounded.
+double volume_unit(double largest) { return std::ldexp(1.0, std::ilogb(largest) - 40); }
+
 // Each giver keeps (1 − α) of its volume: α = c s³ / (V + c s³) for the volume V of all givers and
 // their mean c of volume over cubed spacing, at most a half. So volumes in proportion to the cubes
-// of spacings stay so. Multiples of 2⁻⁴⁰ of the largest volume are given: no sum is rounded.
+// of spacings stay so.
 double take_volume(NodeSet& nodes, double spacing, std::span<const std::uint32_t> givers) {
   double sum = 0, density = 0, largest = 0;
   for (const auto j : givers) {
@@ -39,7 +42,7 @@ double take_volume(NodeSet& nodes, double spacing, std::span<const std::uint32_t
     largest = std::max(largest, v);
   }
   const double wanted = std::pow(spacing, 3) * density / double(givers.size()),
-               share = std::min(0.5, wanted / (sum + wanted)), unit = std::ldexp(1.0, std::ilogb(largest) - 40);
+               share = std::min(0.5, wanted / (sum + wanted)), unit = volume_unit(largest);
   double taken = 0;
   for (const auto j : givers) {
     const double given = unit * std::floor(share * nodes.volume[j] / unit);
@@ -166,6 +169,54 @@ std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& fac
     if (++count == options.limit) break;
   }
   return count;
+}
+
+namespace {
+
+// Gives node i its fair share of the volume of it and its neighbours, if it has less than half of
+// that. Returns whether it had.
+bool take_fair_share(NodeSet& nodes, const VisibilityGraph& graph, NodeId i) {
+  const auto cube = [&](std::uint32_t j) { return std::pow(nodes.spacing[j], 3); };
+  double volume = nodes.volume[i.index()], cubes = cube(i.value), largest = volume;
+  const auto neighbors = graph.neighbors(nodes, i);
+  for (const auto& n : neighbors) {
+    volume += nodes.volume[n.to.index()];
+    cubes += cube(n.to.value);
+    largest = std::max(largest, nodes.volume[n.to.index()]);
+  }
+  const double density = volume / cubes, fair = density * cube(i.value);
+  if (!(nodes.volume[i.index()] < 0.5 * fair)) return false;
+  const auto excess = [&](std::uint32_t j) { return std::max(0.0, nodes.volume[j] - density * cube(j)); };
+  double all = 0;
+  for (const auto& n : neighbors) all += excess(n.to.value);
+  // What this node lacks is at most what all that have too much have too much.
+  const double share = std::min(1.0, (fair - nodes.volume[i.index()]) / all), unit = volume_unit(largest);
+  double taken = 0;
+  for (const auto& n : neighbors) {
+    const double given = unit * std::floor(share * excess(n.to.value) / unit);
+    nodes.volume[n.to.index()] -= given;
+    taken += given;
+  }
+  nodes.volume[i.index()] += taken;
+  return taken > 0;
+}
+
+}  // namespace
+
+void even_out_volumes(NewNodes& inserted) {
+  Body& body = inserted.body();
+  std::vector<NodeId> nodes = inserted.donors();
+  for (std::uint32_t i = inserted.first().value; i < body.nodes.size(); ++i) nodes.push_back(NodeId(i));
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  // A volume spreads by one edge of the graph in a sweep, and a chain of n new nodes is even after
+  // about n sweeps; more are not worth their time.
+  constexpr int max_sweeps = 32;
+  bool any = true;
+  for (int sweep = 0; any && sweep < max_sweeps; ++sweep) {
+    any = false;
+    for (const NodeId i : nodes) any = take_fair_share(body.nodes, body.graph, i) || any;
+  }
 }
 
 namespace {

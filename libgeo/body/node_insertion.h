@@ -57,6 +57,13 @@ struct InsertionOptions {
 /// not too close to nodes that they see. Returns their number.
 std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& faces, const InsertionOptions& options);
 
+/// Evens out the volumes of new nodes and of their donors: one with less than half of what its
+/// cubed spacing would have of the volume of it and its neighbours takes the rest from the
+/// neighbours that have more than that. A donor that gives a half again and again would be left
+/// with no mass to speak of, and light nodes beside heavy ones make a time step stiff. The sum
+/// does not change. Precondition: the graph has the new nodes.
+void even_out_volumes(NewNodes& inserted);
+
 /// Moves nodes that are on or very near one of the faces away from it and from all other faces near
 /// them: each node at most once, through no face that it does not touch. Returns them, ascending.
 std::vector<NodeId> move_nodes_off(Body& body, const std::vector<FaceId>& faces);

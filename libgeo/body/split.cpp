@@ -98,6 +98,7 @@ class BodyUpdater {
       updated_.insert(more.updated_nodes.begin(), more.updated_nodes.end());
     };
     repair_connectivity(inserted_, mismatch, update, {delta.crack.new_crack_faces, graph_update.cut_edges});
+    even_out_volumes(inserted_);
     delta.detached = detached_nodes(body_, pieces_, mismatch);
     delta.updated_nodes.assign(updated_.begin(), updated_.end());
     mark_debris(body_, delta.updated_nodes);

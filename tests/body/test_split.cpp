@@ -12,6 +12,7 @@
 #include "cases.h"
 #include "geometry/bvh.h"
 #include "graph/build_graph.h"
+#include "graph/update.h"
 #include "invariants/cut_bodies.h"
 #include "kerf/body.h"
 #include "kerf/error.h"
@@ -238,6 +239,42 @@ TEST_CASE("New nodes along a cut of many steps own about as much as the nodes ar
     CHECK(per_cubed_spacing(i) > 0.25 * around[4]);
   }
   CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
+}
+
+TEST_CASE("A donor that gave a half to each of many new nodes gets its share back", "[body]") {
+  const Seeds all = seeds(40);
+  for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Body body = make_body(make_block({1, 1, 1}, 0.25), 0.25);
+    prepare_cache(body);
+    const double volume = total(body.nodes.volume);
+    NewNodes inserted(body);
+    const NodeId donor(static_cast<std::uint32_t>(random.uniform() * double(body.nodes.size())));
+    const int count = 2 + static_cast<int>(40 * random.uniform());
+    for (int i = 0; i < count; ++i)
+      inserted.insert({random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9)}, donor, 0.25);
+    update_graph({.nodes = body.nodes,
+                  .grid = body.cache->grid,
+                  .first_new = inserted.first(),
+                  .k = body.k,
+                  .triangles_near = triangles_near(body.surface)},
+                 body.graph);
+    const double least = body.nodes.volume[donor.index()];
+    even_out_volumes(inserted);
+    CHECK(total(body.nodes.volume) == Approx(volume).epsilon(1e-12));
+    CHECK(body.nodes.volume[donor.index()] > 1.9 * least);
+    for (std::uint32_t i = 0; i < body.nodes.size(); ++i) {
+      if (i != donor.value && i < inserted.first().value) continue;
+      const auto cube = [&](std::uint32_t j) { return std::pow(body.nodes.spacing[j], 3); };
+      double near = body.nodes.volume[i], cubes = cube(i);
+      for (const auto& n : body.graph.neighbors(body.nodes, NodeId(i))) {
+        near += body.nodes.volume[n.to.index()];
+        cubes += cube(n.to.value);
+      }
+      CHECK(body.nodes.volume[i] >= 0.49 * near / cubes * cube(i));
+    }
+  }
 }
 
 TEST_CASE("Nodes whose neighbours do not span space are debris", "[body]") {

@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <sstream>
 
+#include "base/random.h"
 #include "cases.h"
 #include "kerf/check.h"
 #include "kerf/contact.h"
@@ -24,8 +26,9 @@ namespace {
 constexpr double same_energy = 1.25;       // a bridge is as thin as the step in which the cut passes it
 constexpr double same_energy_of_thin = 4;  // a cut ring sags as a beam with two nodes across
 constexpr double least_energy = 1e-6;      // over modulus and volume: a strain of a thousandth
-constexpr std::size_t least_work =
-    200;  // a cut along mesh lines divides nothing, one beside them a few triangles a step
+// Work of one stroke that may come or go: along mesh lines it divides nothing, beside them a few
+// triangles a step.
+constexpr std::size_t least_work = 200;
 
 // Results that do not depend on the place of a scene, lengths in units of its scale.
 struct Outcome {
@@ -34,6 +37,7 @@ struct Outcome {
   // The largest elastic energy of a frame in which the body is one piece, over Young's modulus and
   // volume. Afterwards it depends on which piece has a node that a grip holds.
   double energy = 0;
+  double sag = 0;        // the largest motion of a node in these frames
   std::size_t work = 0;  // Newton steps and triangles cut
 };
 
@@ -54,7 +58,9 @@ Outcome run(const CutScene& cut, Simulation sim) {
     const FrameStats stats = sim.advance_frame();
     total += stats;
     outcome.crossings += count_crossings(sim.surface());
-    if (find_pieces(sim.body().surface).volume.size() == 1) outcome.energy = std::max(outcome.energy, stats.energy);
+    if (find_pieces(sim.body().surface).volume.size() > 1) continue;
+    outcome.energy = std::max(outcome.energy, stats.energy);
+    for (const Vec3& u : sim.state().motion.displacement) outcome.sag = std::max(outcome.sag, u.norm());
   }
   outcome.refused = total.refused;
   outcome.work = total.newton + total.split.crack.triangles_cut;
@@ -89,6 +95,38 @@ std::size_t specks(const Outcome& o) {
       std::count_if(o.volumes.begin(), o.volumes.end(), [](double v) { return v < largest; }));
 }
 
+// Whether two outcomes of a scene are the same, to the accuracy of the scheme.
+bool are_alike(const CutScene& cut, const Outcome& a, const Outcome& b) {
+  const double same = cut.is_thin ? same_energy_of_thin : same_energy;
+  const std::size_t spare = least_work * cut.scene.blades.size();
+  return are_same_pieces(a.volumes, b.volumes) && b.energy < same * a.energy + least_energy &&
+         a.energy < same * b.energy + least_energy && b.work < 2 * a.work + spare && a.work < 2 * b.work + spare;
+}
+
+// The scene with each blade displaced by a distance.
+CutScene disturbed(CutScene cut, double distance, Random& random) {
+  for (Blade& blade : cut.scene.blades) {
+    const Vec3 by = distance * random.direction();
+    for (auto& key : blade.motion.keys) key.position += by;
+  }
+  return cut;
+}
+
+// Whether the place of a scene decides no more than displacements of its blades do, of two sizes:
+// far below all lengths of the scene; and as the scheme's own error of the body's motion. A blade
+// that grazes the wall of an earlier cut, which has sagged, may shave it or not.
+bool is_decided_by_errors(const CutScene& cut, const NodeSet& nodes, const Outcome& here, const Outcome& there) {
+  constexpr int trials = 12;
+  constexpr double least = 1e-10;                          // m; models are about a metre large
+  const double most = 0.5 * (same_energy - 1) * here.sag;  // energies are squares of motions
+  Random random(1);
+  for (int k = 0; k < trials; ++k) {
+    const CutScene other = disturbed(cut, k % 2 == 0 ? least : random.uniform(0, most), random);
+    if (are_alike(cut, run(other, simulation_of(other, nodes)), there)) return true;
+  }
+  return false;
+}
+
 std::string told(const Outcome& o) {
   std::string text = std::to_string(o.volumes.size()) + " pieces (";
   char number[32];
@@ -109,6 +147,7 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
   std::optional<std::uint64_t> scene;  // that `here` is of
   Outcome here;
   NodeSet nodes;
+  std::set<std::uint64_t> grazing;
   for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
     const CutScene cut = random_cut_scene(seed / ways.size());
     const CutScene moved = placed(cut, ways[seed % ways.size()]);
@@ -126,15 +165,16 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
       std::cout << seed << " " << moved.about << "\n   " << told(here) << "\n   " << told(there) << std::endl;
     CHECK(here.crossings == 0);
     CHECK(there.crossings == 0);
-    CHECK(are_same_pieces(here.volumes, there.volumes));
     CHECK(specks(here) == 0);
     CHECK(specks(there) == 0);
-    const double same = cut.is_thin ? same_energy_of_thin : same_energy;
-    CHECK(there.energy < same * here.energy + least_energy);
-    CHECK(here.energy < same * there.energy + least_energy);
-    CHECK(there.work < 2 * here.work + least_work);
-    CHECK(here.work < 2 * there.work + least_work);
+    if (are_alike(cut, here, there)) continue;
+    CHECK(is_decided_by_errors(cut, nodes, here, there));
+    grazing.insert(seed / ways.size());
+    std::cout << "KERF_CASE=" << seed << " is decided by errors of the scheme: " << moved.about << "\n   " << told(here)
+              << "\n   " << told(there) << std::endl;
   }
+  // Scenes in which the place decided: few.
+  CHECK(20 * grazing.size() <= static_cast<std::size_t>(all.count) / ways.size() + 20);
 }
 
 // KERF_SCENES='out/halve.toml out/polyp.toml' KERF_FRAMES=16 test_simulation '[scenes]': scenes of

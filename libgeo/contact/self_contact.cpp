@@ -70,7 +70,7 @@ SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOpti
 
 ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const State& state, double dt,
                                     const Vec3& gravity, const std::vector<std::uint8_t>& fixed) {
-  update_weights(body, solid);
+  update_weights(body, solid, state.displacement);
   const FreeMotion free = free_motion(body, solid, state, dt, gravity, fixed);
   const std::vector<Vec3>& targets = targets_at(state.displacement);
   const std::vector<Vec3> free_targets = surface_targets(weights_, free.displacement),
@@ -107,7 +107,7 @@ ContactStats SelfContact::finish_step(ContactStep step, const Solid& solid, cons
   if (step.revision != revision_) throw std::logic_error("the surface has changed since the contact step began");
   Stopwatch clock;
   const std::size_t touching = step.penalty->pressing();
-  take_rotations(solid);
+  take_rotations(solid, displacement);
   ContactStats stats = move_surface(displacement, &step.tracking_error);
   stats.touching = touching;
   spare_penalty_ = std::move(step.penalty);
@@ -119,8 +119,7 @@ ContactStats SelfContact::finish_step_with_impulses(const Body& body, const Soli
                                                     const std::vector<Vec3>& before, double dt,
                                                     const std::vector<std::uint8_t>& fixed, State& state) {
   Stopwatch clock;
-  update_weights(body, solid);
-  take_rotations(solid);
+  update_weights(body, solid, state.displacement);
   const std::size_t touching = resolve_with_impulses(
       {.solid = solid, .weights = weights_, .before = before, .dt = dt, .fixed = fixed},
       {.gap = gap(), .friction = options_.friction, .recovery = options_.recovery, .rounds = options_.rounds}, surface_,
@@ -131,8 +130,8 @@ ContactStats SelfContact::finish_step_with_impulses(const Body& body, const Soli
   return stats;
 }
 
-void SelfContact::take_rotations(const Solid& solid) {
-  if (weights_.set_rotations(solid)) targets_ = {};
+void SelfContact::take_rotations(const Solid& solid, const std::vector<Vec3>& u) {
+  if (weights_.set_rotations(solid, u)) targets_ = {};
 }
 
 // Opens sheets, then moves all vertices towards their targets at displacements u. `tracking_error`:
@@ -188,8 +187,9 @@ void SelfContact::commit(EmbeddingPlan plan, const Body& body, const BodyDelta& 
   weights_.mark_changed(body, delta);
 }
 
-void SelfContact::update_weights(const Body& body, const Solid& solid) {
+void SelfContact::update_weights(const Body& body, const Solid& solid, const std::vector<Vec3>& u) {
   if (weights_.has_changes()) targets_.invalidate(weights_.update(body, solid));
+  take_rotations(solid, u);
 }
 
 }  // namespace geo

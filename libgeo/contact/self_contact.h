@@ -73,7 +73,8 @@ class SelfContact {
   /// several steps.
   void commit(EmbeddingPlan plan, const Body& body, const BodyDelta& delta);
   /// Makes the weights follow the crack steps that were committed. A step that begins does so, too.
-  void update_weights(const Body& body, const Solid& solid);
+  /// `u`: displacements of the nodes.
+  void update_weights(const Body& body, const Solid& solid, const std::vector<Vec3>& u);
 
   /// Sets Coulomb's coefficient of the steps to come.
   void set_friction(double friction) { options_.friction = friction; }
@@ -91,7 +92,7 @@ class SelfContact {
   std::uint64_t revision() const { return revision_; }
 
  private:
-  void take_rotations(const Solid& solid);
+  void take_rotations(const Solid& solid, const std::vector<Vec3>& u);
   double gap() const { return options_.gap * surface().edge; }
   ContactStats move_surface(const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error);
 

@@ -48,11 +48,11 @@ StepVeto Collisions::embedding_check(const Body& body, const Solid& solid, const
   };
 }
 
-void Collisions::update_weights(const Body& body, const Solid& solid) {
-  if (surface_) return surface_->update_weights(body, solid);
-  if (weights_.size() == 0) return weights_.rebuild(body, solid);
+void Collisions::update_weights(const Body& body, const Solid& solid, const State& motion) {
+  if (surface_) return surface_->update_weights(body, solid, motion.displacement);
+  if (weights_.size() == 0) weights_.rebuild(body, solid);
   if (weights_.has_changes()) targets_.invalidate(weights_.update(body, solid));
-  if (weights_.set_rotations(solid)) targets_ = {};
+  if (weights_.set_rotations(solid, motion.displacement)) targets_ = {};
 }
 
 void Collisions::commit(std::optional<EmbeddingPlan> plan, const Body& body, const BodyDelta& delta) {

@@ -36,7 +36,7 @@ class Collisions {
   void commit(std::optional<EmbeddingPlan> plan, const Body& body, const BodyDelta& delta);
   /// Makes the surface's weights follow the crack steps and the rotations of debris. The first call
   /// costs a pass over the surface, others follow the cuts.
-  void update_weights(const Body& body, const Solid& solid);
+  void update_weights(const Body& body, const Solid& solid, const State& motion);
 
   /// Sets Coulomb's coefficient of the steps to come.
   void set_friction(double friction) {

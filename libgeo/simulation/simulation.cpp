@@ -8,6 +8,7 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/deformation.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "simulation/driven_motion.h"
 #include "simulation/run_data.h"
 #include "simulation/time_loop.h"
@@ -154,7 +155,7 @@ TriangleMesh Simulation::surface(const TriangleMesh* model) const {
     return mesh;
   }
   const std::vector<Vec3>& u = run.state.motion.displacement;
-  const auto gradient = run.solid.nodes().gradients(u);
+  const LazyNodalGradients gradient = lazy_gradients(SolidDiscretisation::of(run.solid.nodes()), u);
   parallel_for(rows.size(), 256, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> nodes;
     for (std::size_t v = begin; v < end; ++v) {

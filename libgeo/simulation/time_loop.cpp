@@ -112,7 +112,7 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
   const auto begin = [&] {
     const Timed timed(stats.contact_seconds);
     if (obstacles_.any()) {
-      collisions_.update_weights(run_.body, nodes);
+      collisions_.update_weights(run_.body, nodes, motion);
       obstacles_.add_potentials({.scene = run_.scene,
                                  .body = run_.body,
                                  .solid = nodes,

@@ -53,7 +53,7 @@ int contact(const Options& options) {
         solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
         const double start = cpu_seconds();
         if (plan) surface.commit(std::move(*plan), body, delta);
-        surface.update_weights(body, solid);
+        surface.update_weights(body, solid, state.displacement);
         following += cpu_seconds() - start;
       }
     }

@@ -20,7 +20,7 @@ inline BodyDelta cut(Body& body, Solid& solid, State& state, SelfContact& contac
   solid.update(body.nodes, body.graph, delta.first_new_node, delta.donors, delta.updated_nodes, state);
   REQUIRE(plan.has_value() == !delta.crack.empty());
   if (plan) contact.commit(std::move(*plan), body, delta);
-  contact.update_weights(body, solid);
+  contact.update_weights(body, solid, state.displacement);
   return delta;
 }
 

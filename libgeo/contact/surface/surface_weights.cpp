@@ -77,7 +77,7 @@ void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
   std::iota(all.begin(), all.end(), 0u);
   compute(body, solid, all);
-  set_rotations(solid);
+  rotated_.clear();
 }
 
 void SurfaceWeights::mark_changed(const Body& body, const BodyDelta& delta) {
@@ -110,17 +110,34 @@ std::vector<std::uint32_t> SurfaceWeights::update(const Body& body, const Solid&
     if (changed_[v]) vertices.push_back(v);
   changed_.clear();
   compute(body, solid, vertices);
-  set_rotations(solid);
   return vertices;
 }
 
-bool SurfaceWeights::set_rotations(const Solid& solid) {
+bool SurfaceWeights::set_rotations(const Solid& solid, const std::vector<Vec3>& u) {
   const NodalGradientOperator& mls = SolidDiscretisation::of(solid).mls;
-  rotated_.clear();
-  if (!mls.has_rotations()) return false;
-  rotated_.resize(arms_.size(), Vec3::Zero());
-  for (std::size_t v = 0; v < arms_.size(); ++v)
-    for (const Arm& a : arms_[v]) rotated_[v] += mls.undetermined(a.node) * a.arm;
+  std::vector<Mat3> rotation(mls.size(), Mat3::Identity());  // of nodes that need it
+  std::vector<std::uint32_t> rotating;
+  std::vector<char> is_rotating(mls.size(), 0);
+  for (const auto& arms : arms_)
+    for (const Arm& a : arms)
+      if (a.share < 1 && !is_rotating[a.node]) {
+        is_rotating[a.node] = 1;
+        rotating.push_back(a.node);
+      }
+  parallel_for(rotating.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) rotation[rotating[k]] = mls.rotation(rotating[k], u);
+  });
+  std::vector<Vec3> rotated;
+  if (!rotating.empty() || mls.has_rotations()) {
+    rotated.resize(arms_.size(), Vec3::Zero());
+    for (std::size_t v = 0; v < arms_.size(); ++v)
+      for (const Arm& a : arms_[v]) {
+        const Mat3 rest = (1 - a.share) * (rotation[a.node] - Mat3::Identity());
+        rotated[v] += (a.share * mls.undetermined(a.node) + rest) * a.arm;
+      }
+  }
+  if (rotated == rotated_) return false;
+  rotated_ = std::move(rotated);
   return true;
 }
 
@@ -141,6 +158,7 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
   area_.resize(stencils_.size(), 0);
   arms_.resize(stencils_.size());
   rest_.resize(stencils_.size(), none);
+  if (!rotated_.empty()) rotated_.resize(stencils_.size(), Vec3::Zero());
   const NodalGradientOperator& mls = SolidDiscretisation::of(solid).mls;
   parallel_for(vertices.size(), 128, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<NodeId, double>> bound;
@@ -167,13 +185,19 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
         bound.resize(1);
         bound[0].second = total = 1;
       }
+      const auto arm_of = [&](NodeId i, double w) -> Vec3 { return w / total * (x - body.nodes.position[i.index()]); };
+      double amplified = 0;
+      for (const auto& [i, w] : bound)
+        if (w > 0) amplified += mls.amplification(i.index(), arm_of(i, w));
+      const double share = gradient_share(amplified);
       for (const auto& [i, w] : bound) {
         const NodalGradientOperator::Node& node = mls[i.index()];
-        const Vec3 arm = w / total * (x - body.nodes.position[i.index()]);
-        sums.add(i.value, w / total + node.own_gradient.dot(arm));
-        if (node.quality != MomentQuality::good) arms_[v].push_back({i.value, arm});
+        const Vec3 arm = arm_of(i, w);
+        sums.add(i.value, w / total + share * node.own_gradient.dot(arm));
+        if (node.quality != MomentQuality::good || share < 1) arms_[v].push_back({i.value, arm, share});
         if (w == 0) continue;
-        for (std::size_t q = 0; q < node.neighbors.size(); ++q) sums.add(node.neighbors[q], node.gradient[q].dot(arm));
+        for (std::size_t q = 0; q < node.neighbors.size(); ++q)
+          sums.add(node.neighbors[q], share * node.gradient[q].dot(arm));
       }
       sums.move_to(stencil);
       const auto heaviest = std::max_element(stencil.begin(), stencil.end(),

@@ -30,9 +30,9 @@ class SurfaceWeights {
   /// Whether stencils are marked.
   bool has_changes() const { return !changed_.empty(); }
 
-  /// Takes over the rotations of debris (State::rotation) from the solid, after a step of it.
-  /// Returns whether there is any.
-  bool set_rotations(const Solid& solid);
+  /// Sets rotated() for displacements u of the nodes: after a step of the solid, and after
+  /// rebuild() or update(). Returns whether it has changed for any vertex.
+  bool set_rotations(const Solid& solid, const std::vector<Vec3>& u);
 
   /// Number of surface vertices.
   std::size_t size() const { return stencils_.size(); }
@@ -55,8 +55,9 @@ class SurfaceWeights {
   const std::vector<std::uint32_t>& heaviest() const { return heaviest_; }
   /// The nodes' values interpolated at surface vertex v; zero if no node carries it.
   Vec3 interpolate(std::size_t v, const std::vector<Vec3>& values) const { return weighted_sum(stencils_[v], values); }
-  /// The part of the displacement of surface vertex v that rotations of debris add in Eq. 1. It is
-  /// constant in a step.
+  /// The part of the displacement of surface vertex v that rotations of nodes add in Eq. 1: those
+  /// of debris (State::rotation), and those that take the place of what gradients would amplify
+  /// (most_amplified). It is constant in a step.
   Vec3 rotated(std::size_t v) const { return rotated_.empty() ? Vec3(Vec3::Zero()) : rotated_[v]; }
   /// interpolate() for many vertices, in parallel; equal to the bit.
   std::vector<Vec3> interpolate(std::span<const std::uint32_t> vertices, const std::vector<Vec3>& values) const;
@@ -64,7 +65,8 @@ class SurfaceWeights {
  private:
   struct Arm {
     std::uint32_t node;
-    Vec3 arm;  // from the node to the vertex, times the node's kernel weight
+    Vec3 arm;      // from the node to the vertex, times the node's kernel weight
+    double share;  // of the gradient; the rotation has the rest
   };
   void compute(const Body& body, const Solid& solid, std::span<const std::uint32_t> vertices);
 
@@ -73,7 +75,7 @@ class SurfaceWeights {
   std::vector<std::uint32_t> heaviest_;
   std::vector<Vec3> rest_;  // per vertex; not a number: dead
   std::vector<double> area_, norm_;
-  std::vector<std::vector<Arm>> arms_;  // per vertex: to its nodes without a full gradient
+  std::vector<std::vector<Arm>> arms_;  // per vertex: to nodes whose rotation has a share in its motion
   std::vector<Vec3> rotated_;           // per vertex; empty: zero
   std::vector<std::uint8_t> changed_;   // per vertex: 1 if marked; empty: none is
 };

@@ -8,26 +8,15 @@
 #include "kerf/nodes.h"
 #include "kerf/vec.h"
 #include "mechanics/discretisation/kernel.h"
+#include "mechanics/discretisation/nodal_gradients.h"
 
 namespace geo {
 
 /// Eq. 1: the displacement at x, material coordinates, a blend of the nodes' affine motions u_i +
-/// ∇u_i (x − x_i). `nodes`: ids with their distance to x, not empty. `gradient[i]`: ∇u at node i.
-/// If no kernel reaches x, the first node's motion.
-template <class Gradients>
+/// ∇u_i (x − x_i), with rotations in place of what gradients would amplify (most_amplified).
+/// `nodes`: ids with their distance to x, not empty. `gradient`: of the displacements u. If no
+/// kernel reaches x, the first node's motion.
 Vec3 displacement_at(const Vec3& x, std::span<const std::pair<NodeId, double>> nodes, const NodeSet& set,
-                     const std::vector<Vec3>& u, const Gradients& gradient) {
-  double total = 0;
-  Vec3 sum = Vec3::Zero();
-  for (const auto& [id, distance] : nodes) {
-    const std::size_t i = id.index();
-    const double w = kernel(distance / set.radius[i], 1.0);
-    total += w;
-    sum += w * (u[i] + gradient[i] * (x - set.position[i]));
-  }
-  if (total > 0) return sum / total;
-  const std::size_t i = nodes[0].first.index();
-  return u[i] + gradient[i] * (x - set.position[i]);
-}
+                     const std::vector<Vec3>& u, const LazyNodalGradients& gradient);
 
 }  // namespace geo

@@ -5,7 +5,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
+#include "geometry/nearest_rotation.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/kernel.h"
 #include "mechanics/terms/weighted_sums.h"
@@ -81,6 +83,24 @@ Mat3 NodalGradientOperator::gradient(std::size_t i, const std::vector<Vec3>& u) 
   for (std::size_t q = 0; q < node.neighbors.size(); ++q)
     g += (u[node.neighbors[q]] - u[i]) * node.gradient[q].transpose();
   return g;
+}
+
+double NodalGradientOperator::amplification(std::size_t i, const Vec3& arm) const {
+  const Node& node = nodes_[i];
+  double sum = std::abs(node.own_gradient.dot(arm));
+  for (const Vec3& g : node.gradient) sum += std::abs(g.dot(arm));
+  return sum;
+}
+
+Mat3 NodalGradientOperator::rotation(std::size_t i, const std::vector<Vec3>& u) const {
+  // Share of State::rotation where neighbours do not span space, of the trace of Σ ŵ x xᵀ, which is
+  // 1: as in debris.cpp.
+  constexpr double memory = 1e-3;
+  const Node& node = nodes_[i];
+  Mat3 spread = node.quality == MomentQuality::good ? Mat3(Mat3::Zero()) : Mat3(memory * Mat3::Identity());
+  for (std::size_t q = 0; q < node.neighbors.size(); ++q)
+    spread += node.normalised_weight[q] * node.offset[q] * node.offset[q].transpose();
+  return nearest_rotation((Mat3::Identity() + displacement_gradient(i, u)) * spread).rotation;
 }
 
 std::vector<PaddedMat3> NodalGradientOperator::padded_gradients(const std::vector<Vec3>& u) const {

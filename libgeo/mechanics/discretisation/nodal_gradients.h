@@ -18,6 +18,17 @@
 
 namespace geo {
 
+/// The largest Σ_i w_i Σ_j |g_ij · (x − x_i)| with which Eq. 1 extends the motion of nodes to x by
+/// their gradients. On a regular grid, it is 2 for a point one spacing beyond the last node, in
+/// each of three directions. Nodes that lie closer to each other, in a thin piece, would throw a
+/// point a spacing away by many times their own motion: there, the gradients' share is reduced to
+/// this bound, and the nodes' rotations take the rest. So weights of nodes have a sum of absolute
+/// values of at most 7.
+constexpr double most_amplified = 6;
+
+/// The share of gradients in Eq. 1 for the sum of most_amplified.
+inline double gradient_share(double amplified) { return amplified > most_amplified ? most_amplified / amplified : 1; }
+
 /// ∇u_i = Σ_j (u_j − u_i) g_ijᵀ with g_ij = w_ij A_i⁻¹ x_ij and the moment matrix A_i = Σ_j w_ij
 /// x_ij x_ijᵀ, over the neighbours j of node i; x_ij = x_j − x_i.
 class NodalGradientOperator {
@@ -41,6 +52,14 @@ class NodalGradientOperator {
   Mat3 displacement_gradient(std::size_t i, const std::vector<Vec3>& u) const {
     return gradient(i, u) + undetermined(i);
   }
+  /// Σ_j |g_ij · arm|, the node itself included: at most how far ∇u_i arm goes where no node moves
+  /// farther than 1. `arm`: from node i, model units.
+  double amplification(std::size_t i, const Vec3& arm) const;
+  /// The rotation of the material about node i for displacements u: the one nearest to
+  /// (1 + ∇u_i) Σ_j ŵ_ij x_ij x_ijᵀ, ŵ_ij the normalised weights, so that directions in which the
+  /// neighbours hardly extend have no say. Where the rank is not full, State::rotation decides
+  /// about these directions.
+  Mat3 rotation(std::size_t i, const std::vector<Vec3>& u) const;
   /// displacement_gradient() at all nodes, in parallel.
   std::vector<Mat3> gradients(const std::vector<Vec3>& u) const;
   /// gradients(), padded.
@@ -76,6 +95,10 @@ class LazyNodalGradients {
         u_(&u),
         gradient_(gradients.size()),
         state_(std::make_unique<std::atomic<State>[]>(gradients.size())) {}
+  /// NodalGradientOperator::amplification().
+  double amplification(std::size_t i, const Vec3& arm) const { return operator_->amplification(i, arm); }
+  /// NodalGradientOperator::rotation() at these displacements. Computed anew by each call.
+  Mat3 rotation(std::size_t i) const { return operator_->rotation(i, *u_); }
   /// ∇u at node i.
   Mat3 operator[](std::size_t i) const {
     if (state_[i].load(std::memory_order_acquire) == State::known) return gradient_[i];

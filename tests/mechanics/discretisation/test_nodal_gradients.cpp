@@ -1,10 +1,13 @@
 // Moving-least-squares gradients at nodes, and the penalty on zero-energy modes.
 #include "mechanics/discretisation/nodal_gradients.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 
 #include "base/random.h"
+#include "cases.h"
 #include "kerf/parallel.h"
 #include "mechanics/bodies.h"
 #include "mechanics/discretisation/deformation.h"
@@ -29,6 +32,59 @@ std::vector<Vec3> random_field(Random& random, std::size_t count) {
 }
 
 }  // namespace
+
+TEST_CASE("Eq. 1 reproduces an affine motion, and falls back on the first node's", "[nodes]") {
+  const Body body = block_body({1, 0.8, 0.6}, 0.2);
+  const NodalGradientOperator gradients = operator_of(body);
+  Mat3 linear;
+  linear << 0.1, 0.2, 0, -0.3, 0.1, 0.4, 0.2, 0, 0.5;
+  const Vec3 shift(1, 2, 3), x(0.4, 0.3, 0.2);
+  std::vector<Vec3> u;
+  for (const Vec3& p : body.nodes.position) u.push_back(linear * p + shift);
+  std::vector<std::pair<NodeId, double>> nodes;
+  for (std::uint32_t i = 0; i < u.size(); ++i) nodes.push_back({NodeId(i), (x - body.nodes.position[i]).norm()});
+  NodeSet set = body.nodes;
+  CHECK((displacement_at(x, nodes, set, u, {gradients, u}) - (linear * x + shift)).norm() < 1e-13);
+  set.radius.assign(u.size(), 1e-6);  // no kernel reaches x
+  std::sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const std::size_t first = nodes[0].first.index();
+  const Vec3 expected = u[first] + linear * (x - set.position[first]);
+  CHECK((displacement_at(x, nodes, set, u, {gradients, u}) - expected).norm() < 1e-13);
+}
+
+TEST_CASE("Eq. 1 follows a rotation anywhere, and amplifies no motion beyond its bound", "[nodes]") {
+  const Seeds all = seeds(40);
+  for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    // Nodes in a film as thin as a thirtieth of their distance: their gradients amplify.
+    const double thickness = std::pow(10, random.uniform(-1.5, 0));
+    Body body = block_body({1, 0.8, 0.6}, 0.2);
+    for (Vec3& p : body.nodes.position) p.z() *= thickness;
+    const NodalGradientOperator gradients = operator_of(body);
+    const Vec3 axis = random.direction();
+    const Mat3 rotation = Eigen::AngleAxisd(random.uniform(0, 3), axis).toRotationMatrix();
+    std::vector<Vec3> turned, noise;
+    for (const Vec3& p : body.nodes.position) {
+      turned.push_back(rotation * p - p);
+      noise.push_back(random.direction());
+    }
+    const LazyNodalGradients of_turned(gradients, turned), of_noise(gradients, noise);
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 x(random.uniform(-0.5, 1.5), random.uniform(-0.5, 1.5), random.uniform(-0.5, 1.5));
+      std::vector<std::pair<NodeId, double>> nodes;
+      for (std::uint32_t i = 0; i < turned.size(); ++i)
+        nodes.push_back({NodeId(i), (x - body.nodes.position[i]).norm()});
+      std::sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+      nodes.resize(8);
+      const Vec3 expected = rotation * x - x;
+      CHECK((displacement_at(x, nodes, body.nodes, turned, of_turned) - expected).norm() < 1e-9 / thickness);
+      // A rotation moves x by at most twice its distance from a node.
+      CHECK(displacement_at(x, nodes, body.nodes, noise, of_noise).norm() <
+            1 + most_amplified + 2 * nodes.back().second);
+    }
+  }
+}
 
 TEST_CASE("gradients at nodes are exact for linear fields, and all ways to compute them agree", "[nodes]") {
   const Body body = block_body({1, 0.8, 0.6}, 0.2);
@@ -78,7 +134,7 @@ TEST_CASE("the displacement at a node in vector registers is that of Eq. 1", "[n
   Random random(2);
   const std::vector<Vec3> u = random_field(random, n);
   const auto gradient = gradients.padded_gradients(u);
-  const auto matrices = gradients.gradients(u);
+  const LazyNodalGradients lazy(gradients, u);
   std::vector<PaddedVec3> place, displacement;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3& x = body.nodes.position[i];
@@ -92,7 +148,7 @@ TEST_CASE("the displacement at a node in vector registers is that of Eq. 1", "[n
         nodes.push_back({NodeId(j), (body.nodes.position[j] - body.nodes.position[i]).norm()});
       const PaddedVec3 blended =
           blended_displacement(gradients[i].neighbors, {place.data(), displacement.data(), gradient.data()}, i);
-      const Vec3 expected = displacement_at(body.nodes.position[i], nodes, body.nodes, u, matrices);
+      const Vec3 expected = displacement_at(body.nodes.position[i], nodes, body.nodes, u, lazy);
       CHECK((Vec3(blended.at[0], blended.at[1], blended.at[2]) - expected).norm() < 1e-12);
     }
   });

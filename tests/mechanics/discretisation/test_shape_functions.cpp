@@ -8,7 +8,6 @@
 
 #include "base/random.h"
 #include "cases.h"
-#include "mechanics/discretisation/deformation.h"
 #include "mechanics/discretisation/kernel.h"
 
 using namespace geo;
@@ -59,27 +58,6 @@ TEST_CASE("the kernel integrates to 1 and vanishes at its radius", "[shape]") {
   CHECK(kernel(2 * h, h) == 0);
   CHECK(kernel(0.1, h) > kernel(0.2, h));
   CHECK(kernel(0, 1) == Approx(315 / (64 * std::numbers::pi)));
-}
-
-TEST_CASE("Eq. 1 reproduces an affine motion, and falls back on the first node's", "[shape]") {
-  Random random(2);
-  NodeSet set;
-  Mat3 gradient;
-  gradient << 0.1, 0.2, 0, -0.3, 0.1, 0.4, 0.2, 0, 0.5;
-  const Vec3 shift(1, 2, 3), x(0.1, -0.05, 0.2);
-  std::vector<std::pair<NodeId, double>> nodes;
-  std::vector<Vec3> u;
-  for (std::uint32_t i = 0; i < 6; ++i) {
-    set.position.push_back(0.3 * random.direction());
-    set.radius.push_back(1);
-    u.push_back(gradient * set.position[i] + shift);
-    nodes.push_back({NodeId(i), (x - set.position[i]).norm()});
-  }
-  const std::vector<Mat3> gradients(6, gradient);
-  CHECK((displacement_at(x, nodes, set, u, gradients) - (gradient * x + shift)).norm() < 1e-14);
-  set.radius.assign(6, 0.01);  // no kernel reaches x
-  u[0] += Vec3(1, 0, 0);
-  CHECK((displacement_at(x, nodes, set, u, gradients) - (gradient * x + shift + Vec3(1, 0, 0))).norm() < 1e-14);
 }
 
 TEST_CASE("shape gradients reproduce linear fields and match differences of the shape functions", "[shape]") {

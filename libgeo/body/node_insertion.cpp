@@ -125,6 +125,23 @@ std::vector<std::uint32_t> visible_nodes(const Body& body, const Vec3& x, const 
   return visible;
 }
 
+// The share of the way from a point of a face at which the first other face is; 1: none is met.
+double way_to_next_face(const Complex& k, FaceId own, const Vec3& from, const Vec3& to) {
+  Box3 way{from, from};
+  way.add(to);
+  std::vector<FaceId> near;
+  k.faces_near(way, near);
+  double least = 1;
+  for (const FaceId f : near) {
+    const auto [a, b, c] = k.corners(f);
+    if (f == own || !segment_meets_triangle(from, to, a, b, c)) continue;
+    const Vec3 normal = (b - a).cross(c - a);
+    const double share = normal.dot(a - from) / normal.dot(to - from);
+    if (share > 0 && share < least) least = share;
+  }
+  return least;
+}
+
 }  // namespace
 
 std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& faces, const InsertionOptions& options) {
@@ -136,8 +153,17 @@ std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& fac
   const auto spacing_at = [&](const Vec3& x) { return options.spacing > 0 ? options.spacing : crack_spacing.at(x); };
   std::size_t count = 0;
   std::vector<std::uint32_t> near;
-  for (const auto& s : offset_samples(triangles, spacing_at, options.seed)) {
-    if (!is_in_front(body.surface, {faces[s.face], s.side}, s.base, s.position)) continue;
+  for (auto s : offset_samples(triangles, spacing_at, options.seed)) {
+    const Side side{faces[s.face], s.side};
+    if (!is_in_front(body.surface, side, s.base, s.position)) {
+      // In material thinner than the offset. Two heights in turn, since nodes in one plane carry no
+      // bending.
+      if (options.spacing > 0) continue;
+      const double share = count % 2 == 0 ? 0.3 : 0.7;
+      s.position =
+          s.base + share * way_to_next_face(body.surface, side.face, s.base, s.position) * (s.position - s.base);
+      if (!is_in_front(body.surface, side, s.base, s.position)) continue;
+    }
     near.clear();
     // Below the 0.8 spacings between samples (resample.h). Larger: fewer new nodes beside old ones.
     body.cache->grid.within(body.nodes.position, s.position, 0.6 * s.spacing, near);

@@ -19,6 +19,14 @@
 
 namespace geo {
 
+namespace {
+
+// A node nearer to a face than this, in spacings, counts as on it, and is moved off. Larger: more
+// nodes are moved and lose their edges.
+constexpr double on_face = 0.02;
+
+}  // namespace
+
 void set_original_nodes(Body& body, std::uint32_t count) {
   body.original_nodes = count;
   body.finest_spacing = *std::min_element(body.nodes.spacing.begin(), body.nodes.spacing.begin() + count);
@@ -144,57 +152,99 @@ double way_to_next_face(const Complex& k, FaceId own, const Vec3& from, const Ve
 
 }  // namespace
 
+namespace {
+
+// Whether a place has a node that it sees nearer than 0.6 spacings: below the 0.8 spacings between
+// samples (resample.h). Larger: fewer new nodes beside old ones.
+bool has_node_near(const Body& body, const Vec3& x, double spacing) {
+  std::vector<std::uint32_t> near;
+  body.cache->grid.within(body.nodes.position, x, 0.6 * spacing, near);
+  return std::any_of(near.begin(), near.end(),
+                     [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], x); });
+}
+
+// 24 candidates for at most twelve visible nodes. Fewer are found where the crack hides more than
+// half.
+std::vector<std::uint32_t> candidates_at(const Body& body, const Vec3& x) {
+  return body.cache->grid.nearest(body.nodes.position, x, 24, ~0u, [](std::uint32_t) { return true; });
+}
+
+// Inserts a node that sees others, which give it volume. Its radius is in proportion to the spacing
+// and wide enough for a dozen neighbours, as the sampling makes it.
+void insert_seen(NewNodes& inserted, const Vec3& x, NodeId donor, double spacing,
+                 const std::vector<std::uint32_t>& visible) {
+  Body& body = inserted.body();
+  const NodeId node = inserted.insert(x, donor, spacing, visible);
+  const double reach = std::min((body.nodes.position[visible.back()] - x).norm(), 3 * spacing);
+  double& radius = body.nodes.radius[node.index()];
+  radius = std::min(body.widest_radius, std::max(radius * (spacing / body.nodes.spacing[donor.index()]), 1.05 * reach));
+}
+
+std::vector<std::array<Vec3, 3>> corners_of(const Complex& surface, const std::vector<FaceId>& faces) {
+  std::vector<std::array<Vec3, 3>> triangles;
+  for (const FaceId f : faces) triangles.push_back(surface.corners(f));
+  return triangles;
+}
+
+}  // namespace
+
 std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& faces, const InsertionOptions& options) {
   if (faces.empty()) return 0;
   Body& body = inserted.body();
-  std::vector<std::array<Vec3, 3>> triangles;
-  for (const FaceId f : faces) triangles.push_back(body.surface.corners(f));
   CrackSpacing crack_spacing(body);
   const auto spacing_at = [&](const Vec3& x) { return options.spacing > 0 ? options.spacing : crack_spacing.at(x); };
   std::size_t count = 0;
-  std::vector<std::uint32_t> near;
-  for (auto s : offset_samples(triangles, spacing_at, options.seed)) {
-    const Side side{faces[s.face], s.side};
-    if (!is_in_front(body.surface, side, s.base, s.position)) {
-      // In material thinner than the offset. Two heights in turn, since nodes in one plane carry no
-      // bending.
-      if (options.spacing > 0) continue;
-      const double share = count % 2 == 0 ? 0.3 : 0.7;
-      s.position =
-          s.base + share * way_to_next_face(body.surface, side.face, s.base, s.position) * (s.position - s.base);
-      if (!is_in_front(body.surface, side, s.base, s.position)) continue;
-    }
-    near.clear();
-    // Below the 0.8 spacings between samples (resample.h). Larger: fewer new nodes beside old ones.
-    body.cache->grid.within(body.nodes.position, s.position, 0.6 * s.spacing, near);
-    if (std::any_of(near.begin(), near.end(),
-                    [&](std::uint32_t i) { return !is_blocked(body.surface, body.nodes.position[i], s.position); }))
-      continue;
+  for (const auto& s : offset_samples(corners_of(body.surface, faces), spacing_at, options.seed)) {
+    if (!is_in_front(body.surface, {faces[s.face], s.side}, s.base, s.position)) continue;
+    if (has_node_near(body, s.position, s.spacing)) continue;
     // The donor is the nearest node that sees the new one; else, in a fresh sliver, the nearest
     // that saw it before this step; else the nearest of all. Another may have moved far away.
-    const auto nearest =
-        // 24 candidates for at most twelve visible nodes. Fewer are found where the crack hides
-        // more than half.
-        body.cache->grid.nearest(body.nodes.position, s.position, 24, ~0u, [](std::uint32_t) { return true; });
+    const auto nearest = candidates_at(body, s.position);
     const auto visible = visible_nodes(body, s.position, nearest);
     // Where rounding has exchanged two sheets, even air may be in front of a side with material.
     if (visible.empty() && !is_inside(body.surface, s.position)) continue;
     const auto seen_before =
         visible.empty() ? visible_nodes(body, s.position, nearest, options.fresh) : std::vector<std::uint32_t>();
     const NodeId donor(!visible.empty() ? visible[0] : !seen_before.empty() ? seen_before[0] : nearest[0]);
-    const NodeId node = options.spacing == 0 ? inserted.insert(s.position, donor, s.spacing, visible)
-                                             : inserted.insert(s.position, donor, s.spacing);
-    if (options.spacing == 0 && !visible.empty()) {
-      // In proportion to the spacing and wide enough for a dozen neighbours, as the sampling makes
-      // it.
-      const double reach = std::min((body.nodes.position[visible.back()] - s.position).norm(), 3 * s.spacing);
-      double& radius = body.nodes.radius[node.index()];
-      radius = std::min(body.widest_radius,
-                        std::max(radius * (s.spacing / body.nodes.spacing[donor.index()]), 1.05 * reach));
-    }
+    if (options.spacing == 0 && !visible.empty())
+      insert_seen(inserted, s.position, donor, s.spacing, visible);
+    else
+      inserted.insert(s.position, donor, s.spacing);
     if (++count == options.limit) break;
   }
   return count;
+}
+
+std::size_t insert_nodes_between_walls(NewNodes& inserted, const std::vector<FaceId>& faces, std::uint64_t seed) {
+  if (faces.empty()) return 0;
+  Body& body = inserted.body();
+  CrackSpacing crack_spacing(body);
+  std::vector<OffsetSample> waiting;
+  const auto spacing_at = [&](const Vec3& x) { return crack_spacing.at(x); };
+  for (OffsetSample& s : offset_samples(corners_of(body.surface, faces), spacing_at, seed)) {
+    const Side side{faces[s.face], s.side};
+    if (is_in_front(body.surface, side, s.base, s.position)) continue;
+    // Two heights in turn, since nodes in one plane carry no bending. None that would be on a face.
+    const Vec3 way = way_to_next_face(body.surface, side.face, s.base, s.position) * (s.position - s.base);
+    const bool is_near_base = waiting.size() % 2 == 0;
+    if (0.3 * way.norm() < on_face * s.spacing) continue;
+    s.position = s.base + (is_near_base ? 0.3 : 0.7) * way;
+    if (is_in_front(body.surface, side, s.base, s.position)) waiting.push_back(s);
+  }
+  // Only where a node sees them: so pieces stay connected. In turn, since each may be the one that
+  // the next sees.
+  const std::size_t before = body.nodes.size();
+  for (bool any = true; any;) {
+    any = false;
+    std::erase_if(waiting, [&](const OffsetSample& s) {
+      if (has_node_near(body, s.position, s.spacing)) return true;
+      const auto visible = visible_nodes(body, s.position, candidates_at(body, s.position));
+      if (visible.empty()) return false;
+      insert_seen(inserted, s.position, NodeId(visible[0]), s.spacing, visible);
+      return any = true;
+    });
+  }
+  return body.nodes.size() - before;
 }
 
 namespace {
@@ -261,9 +311,8 @@ Vec3 away_from(const std::vector<Vec3>& normals) {
 
 // A position with more clearance for a node on or very near faces; x itself where there is none.
 Vec3 position_off_faces(const Complex& surface, std::uint32_t node, const Vec3& x, double spacing) {
-  // Nodes within 2 % of the spacing of a face are moved, by 10 % at most. Larger: more nodes are
-  // moved and lose their edges.
-  const double close = 0.02 * spacing, farthest = 0.1 * spacing;
+  // By 10 % of the spacing at most. Larger: more nodes lose their edges.
+  const double close = on_face * spacing, farthest = 0.1 * spacing;
   std::vector<FaceId> around;
   surface.faces_near(Box3{x, x}.grown(farthest + close), around);
   const auto distance = [&](FaceId f, const Vec3& p) {
@@ -326,7 +375,7 @@ std::vector<NodeId> move_nodes_off(Body& body, const std::vector<FaceId>& faces)
         },
         [&](int, std::uint32_t i) {
           const Vec3& x = body.nodes.position[i];
-          if ((closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() <= 0.02 * body.nodes.spacing[i])
+          if ((closest_point_on_triangle(x, t[0], t[1], t[2]) - x).norm() <= on_face * body.nodes.spacing[i])
             near.push_back(i);
         });
   }

@@ -57,6 +57,11 @@ struct InsertionOptions {
 /// not too close to nodes that they see. Returns their number.
 std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& faces, const InsertionOptions& options);
 
+/// Inserts nodes where the material behind the faces is thinner than half of the spacing, so that
+/// insert_nodes_near() finds no place: between the two walls, nearer to the one or the other in
+/// turn. Each sees a node. Returns their number. Precondition: each piece has a node.
+std::size_t insert_nodes_between_walls(NewNodes& inserted, const std::vector<FaceId>& faces, std::uint64_t seed);
+
 /// Evens out the volumes of new nodes and of their donors: one with less than half of what its
 /// cubed spacing would have of the volume of it and its neighbours takes the rest from the
 /// neighbours that have more than that. A donor that gives a half again and again would be left

@@ -74,18 +74,6 @@ bool holds_node(const Body& body, std::int32_t piece, const std::vector<SurfaceV
               .empty();
 }
 
-// A face's children are rounded, so that the only node of a thin piece may end up outside of it
-// though nothing was detached.
-void find_emptied_pieces(const Body& body, std::span<const SurfaceVertexId> touched, ConnectivityMismatch& mismatch) {
-  std::map<std::int32_t, std::vector<SurfaceVertexId>> pieces;
-  for (const auto v : touched)
-    if (const auto piece = body.cache->piece[v.index()];
-        piece >= 0 && !mismatch.representative.count(piece) && !body.cache->pieces_without_node.count(piece))
-      pieces[piece].push_back(v);
-  for (const auto& [piece, vertices] : pieces)
-    if (!holds_node(body, piece, vertices)) record_empty_piece(piece, vertices[0], mismatch);
-}
-
 // The comparison after a step, in phases.
 class StepComparison {
  public:
@@ -157,12 +145,45 @@ class StepComparison {
       for (const SurfaceVertexId v : {d.at, d.rest})
         if (const auto piece = body_.cache->piece[v.index()]; !mismatch.representative.count(piece))
           record_empty_piece(piece, v, mismatch);
-    find_emptied_pieces(body_, touched, mismatch);
+    find_emptied_pieces(touched);
+    for (const SurfaceVertexId v : mismatch.empty_pieces) pair_escaped_node(v);
   }
 
   ConnectivityMismatch mismatch;
 
  private:
+  // A face's children are rounded, so that the only node of a thin piece may end up outside of it
+  // though nothing was detached.
+  void find_emptied_pieces(std::span<const SurfaceVertexId> touched) {
+    std::map<std::int32_t, std::vector<SurfaceVertexId>> pieces;
+    for (const auto v : touched)
+      if (const auto piece = body_.cache->piece[v.index()];
+          piece >= 0 && !mismatch.representative.count(piece) && !body_.cache->pieces_without_node.count(piece))
+        pieces[piece].push_back(v);
+    for (const auto& [piece, vertices] : pieces)
+      if (!holds_node(body_, piece, vertices)) record_empty_piece(piece, vertices[0], mismatch);
+  }
+
+  // The only node of a piece that is empty now may be alone in another one. It carries no vertex
+  // any more. Looks at the nearest nodes without an edge, most of which are the only ones of their
+  // pieces.
+  void pair_escaped_node(SurfaceVertexId v) {
+    constexpr std::size_t most = 8;
+    const auto is_alone = [&](std::uint32_t i) {
+      const auto edges = body_.graph.edges(NodeId(i));
+      return i < first_new_.value && !(edges.begin() != edges.end());
+    };
+    const Vec3& x = body_.surface.point(body_.surface.site(v));
+    for (const auto node : body_.cache->grid.nearest(body_.nodes.position, x, most, ~0u, is_alone)) {
+      const std::int32_t piece = piece_of(body_, NodeId(node));
+      const NodeId other = nearest_old(body_, body_.nodes.position[node], first_new_,
+                                       [&](NodeId i) { return i.value != node && piece_of(body_, i) == piece; });
+      if (piece < 0 || !other.valid()) continue;
+      mismatch.representative.try_emplace(piece, other);
+      pair_with_representative(components_, piece, NodeId(node), mismatch);
+    }
+  }
+
   // The label before the step.
   std::int32_t origin_of(std::int32_t piece) const {
     const auto at = origin_.find(piece);

@@ -215,8 +215,10 @@ std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& fac
   return count;
 }
 
-std::size_t insert_nodes_between_walls(NewNodes& inserted, const std::vector<FaceId>& faces, std::uint64_t seed) {
-  if (faces.empty()) return 0;
+std::vector<NodePair> insert_nodes_between_walls(NewNodes& inserted, const std::vector<FaceId>& faces,
+                                                 std::uint64_t seed) {
+  std::vector<NodePair> joins;
+  if (faces.empty()) return joins;
   Body& body = inserted.body();
   CrackSpacing crack_spacing(body);
   std::vector<OffsetSample> waiting;
@@ -233,18 +235,18 @@ std::size_t insert_nodes_between_walls(NewNodes& inserted, const std::vector<Fac
   }
   // Only where a node sees them: so pieces stay connected. In turn, since each may be the one that
   // the next sees.
-  const std::size_t before = body.nodes.size();
   for (bool any = true; any;) {
     any = false;
     std::erase_if(waiting, [&](const OffsetSample& s) {
       if (has_node_near(body, s.position, s.spacing)) return true;
       const auto visible = visible_nodes(body, s.position, candidates_at(body, s.position));
       if (visible.empty()) return false;
+      joins.push_back({NodeId(visible[0]), NodeId(body.nodes.size())});
       insert_seen(inserted, s.position, NodeId(visible[0]), s.spacing, visible);
       return any = true;
     });
   }
-  return body.nodes.size() - before;
+  return joins;
 }
 
 namespace {
@@ -265,7 +267,7 @@ bool take_fair_share(NodeSet& nodes, const VisibilityGraph& graph, NodeId i) {
   const auto excess = [&](std::uint32_t j) { return std::max(0.0, nodes.volume[j] - density * cube(j)); };
   double all = 0;
   for (const auto& n : neighbors) all += excess(n.to.value);
-  // What this node lacks is at most what all that have too much have too much.
+  // The excesses of all neighbours have at least the sum that this node lacks.
   const double share = std::min(1.0, (fair - nodes.volume[i.index()]) / all), unit = volume_unit(largest);
   double taken = 0;
   for (const auto& n : neighbors) {

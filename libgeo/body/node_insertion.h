@@ -59,8 +59,10 @@ std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& fac
 
 /// Inserts nodes where the material behind the faces is thinner than half of the spacing, so that
 /// insert_nodes_near() finds no place: between the two walls, nearer to the one or the other in
-/// turn. Each sees a node. Returns their number. Precondition: each piece has a node.
-std::size_t insert_nodes_between_walls(NewNodes& inserted, const std::vector<FaceId>& faces, std::uint64_t seed);
+/// turn. Returns each with the nearest older node that it sees, its donor. Precondition: each piece has
+/// a node.
+std::vector<NodePair> insert_nodes_between_walls(NewNodes& inserted, const std::vector<FaceId>& faces,
+                                                 std::uint64_t seed);
 
 /// Evens out the volumes of new nodes and of their donors: one with less than half of what its
 /// cubed spacing would have of the volume of it and its neighbours takes the rest from the

@@ -86,7 +86,7 @@ class BodyUpdater {
                                 : find_mismatch(body_, graph_update.cut_edges, pieces_,
                                                 delta.crack.touched_surface_vertices, delta.first_new_node);
     note_parts(body_, pieces_, mismatch);
-    first_repair_node_ = NodeId(body_.nodes.size());
+    first_repair_node_ = body_.nodes.size();
     const auto update = [&](NodeId first_new, std::span<const NodePair> joins) {
       const auto more = update_graph({.nodes = body_.nodes,
                                       .grid = body_.cache->grid,
@@ -98,10 +98,11 @@ class BodyUpdater {
       updated_.insert(more.updated_nodes.begin(), more.updated_nodes.end());
     };
     repair_connectivity(inserted_, mismatch, update, {delta.crack.new_crack_faces, graph_update.cut_edges});
-    last_repair_node_ = NodeId(body_.nodes.size());
-    if (body_.resample_limit > 0 &&
-        insert_nodes_between_walls(inserted_, delta.crack.new_crack_faces, body_.crack_steps) > 0)
-      update(last_repair_node_, {});
+    const NodeId first_between(body_.nodes.size());
+    if (body_.resample_limit > 0) {
+      const auto joins = insert_nodes_between_walls(inserted_, delta.crack.new_crack_faces, body_.crack_steps);
+      if (!joins.empty()) update(first_between, joins);
+    }
     even_out_volumes(inserted_);
     delta.detached = detached_nodes(body_, pieces_, mismatch);
     delta.updated_nodes.assign(updated_.begin(), updated_.end());
@@ -119,7 +120,7 @@ class BodyUpdater {
     stats.edges_added += graph_update.added_edges.size();
     stats.nodes_updated += delta.updated_nodes.size();
     stats.nodes_added += body_.nodes.size() - delta.first_new_node.index();
-    stats.repair_nodes += last_repair_node_.index() - first_repair_node_.index();
+    stats.repair_nodes += body_.nodes.size() - first_repair_node_;
     stats.nodes_moved += delta.moved_nodes.size();
     stats.orphans += delta.rebound_vertices.size();
   }
@@ -137,7 +138,7 @@ class BodyUpdater {
   ClosestVertices closest_;
   std::vector<DetachedPiece> pieces_;
   bool relabelled_ = false;
-  NodeId first_repair_node_, last_repair_node_;  // of those that match_graph_to_pieces() connects pieces with
+  std::size_t first_repair_node_ = 0;
 };
 
 BodyDelta update_after_crack(Body& body, CrackDelta crack, ClosestVertices closest, SplitStats* stats,

@@ -1,3 +1,4 @@
+// The share of gradients, and so of rotations, is the same for all nodes of a blend.
 #include "mechanics/discretisation/deformation.h"
 
 namespace geo {

@@ -42,3 +42,11 @@ def write_level_set(path, mesh, voxel, fog=False):
     """
     from kerf import _formats
     _formats.write_level_set(path, mesh, voxel, fog)
+
+
+def _save_score(self, path):
+    """Writes the walls as one sheet to a front file, which `[[score]]` of a scene and kerf-crack read. Raises OutputError."""
+    _kerf.save_fronts(path, _kerf.Front([self.sheet.vertices], name="score", triangles=self.sheet.faces))
+
+
+_kerf.Score.save = _save_score

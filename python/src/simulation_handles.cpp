@@ -120,6 +120,13 @@ void end(const Handle<Kind::grip>& handle) {
   handle.simulation->run().grip(handle.index).end();
 }
 
+// A force that is zero by definition is no measurement.
+void warn_of_sharp(const geo::Blade& blade) {
+  if (blade.thickness > 0 && !blade.back.isZero()) return;
+  const std::string text = "blade '" + blade.name + "' has no force: without back and thickness it is ideally sharp";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 constexpr const char* extend_blade_doc =
     "Moves a blade that add_blade() made to this pose by the end of the next frame; it cuts on its way, and is "
     "removed\n"
@@ -152,11 +159,13 @@ void add_handles(py::module_& module, Class& simulation) {
           "force",
           [](const Handle<Kind::blade>& h) {
             const Reading reading(h.simulation->busy);
+            warn_of_sharp(scene_object(h));
             return last_force(h.simulation->last.blade_force, h.index);
           },
           "Mean force of the material on the blade's wedge in the last frame, (3,) float64, N. A blade without `back` "
           "and\n"
-          "`thickness` is ideally sharp: it parts the material without a resistance, and the force is zero.");
+          "`thickness` is ideally sharp: it parts the material without a resistance, and the force is zero, which a\n"
+          "UserWarning says.");
   bind_handle<Kind::grip>(module, "GripHandle", "A grip of a run; see Simulation.grip().", move_other_doc)
       .def("end", &end, "Lets go, from now on.");
   bind_handle<Kind::obstacle>(module, "ObstacleHandle", "An obstacle of a run; see Simulation.obstacle().",

@@ -2,6 +2,7 @@
 import gc
 import os
 import threading
+import tempfile
 import unittest
 
 import kerf
@@ -309,6 +310,18 @@ class Lifetimes(unittest.TestCase):
 
 
 class Use(unittest.TestCase):
+    def test_a_saved_score_cuts_as_the_score_does(self):
+        s = cube()
+        walls = kerf.score(s, "voronoi", pieces=6, seed=3)
+        with tempfile.TemporaryDirectory() as work:
+            path = os.path.join(work, "walls.front")
+            walls.save(path)
+            front, = kerf.load(path)
+            with self.assertRaises(kerf.OutputError):
+                walls.save(os.path.join(work, "none", "walls.front"))
+        self.assertTrue(front.is_sheet)
+        self.assertEqual(list(s.crack(front).piece_volumes), list(s.crack(walls).piece_volumes))
+
     def test_progress(self):
         s, told = cube(), []
         kerf.score(s, pieces=8, progress=lambda *report: told.append(report))

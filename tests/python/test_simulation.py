@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+import warnings
 
 import numpy as np
 
@@ -57,13 +58,19 @@ def simulation(text=SCENE, **options):
 class Blades(unittest.TestCase):
     def test_a_blade_without_thickness_has_no_force_and_says_so(self):
         wedge = {"blade.0.back": [0, 0, 0.4], "blade.0.thickness": 0.06}
-        largest = []
+        largest, said = [], []
         for options in ({}, wedge):
             run = simulation(set=options)
             largest.append(0.0)
-            for _ in range(4):
-                run.step()
-                largest[-1] = max(largest[-1], np.abs(run.blade(0).force).max())
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                for _ in range(4):
+                    run.step()
+                    largest[-1] = max(largest[-1], np.abs(run.blade(0).force).max())
+            said.append([str(each.message) for each in caught])
+        self.assertEqual(len(said[0]), 4)
+        self.assertIn("blade 'knife' has no force", said[0][0])
+        self.assertEqual(said[1], [])
         self.assertEqual(largest[0], 0)
         self.assertGreater(largest[1], 0)
         self.assertIn("thickness", kerf.BladeHandle.force.__doc__)

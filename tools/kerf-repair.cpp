@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
            "With --voxel, parts with open edges: plates where closing them takes half their area; closed; plates");
   t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
   t.unit_option(w.unit, "Unit of the model's coordinates, which the output states: m, cm, mm, in, ft ...");
-  t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
+  t.output("The solid (PLY; .obj, .stl or .off on request)", {".ply", ".obj", ".stl", ".off"});
   return t.run(argc, argv, [&] {
     if (!(w.weld >= 0 && w.weld <= 0.1)) throw tool::UsageError("--weld must be from 0 to 0.1");
     if (w.voxel != 0 && !(w.voxel >= 0.0005 && w.voxel <= 0.1))
@@ -170,10 +170,7 @@ int main(int argc, char** argv) {
     const double diagonal = geo::bounding_box(mesh).diagonal();
     Outcome done;
     mesh = solid_of(w, std::move(mesh), diagonal, done);
-    if (target.ends_with(".obj")) tool::say_left_out_of_obj(mesh, target, t);
-    geo::write_all(target, [&](std::ostream& out) {
-      target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair");
-    });
+    tool::write_surface(mesh, {}, target, t);
     if (t.json)
       (target == "-" ? std::cerr : std::cout) << figures(done, mesh) << '\n';
     else

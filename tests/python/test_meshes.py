@@ -235,8 +235,15 @@ class Files(unittest.TestCase):
             documents.append(json.loads(data[20:20 + int.from_bytes(data[12:16], "little")]))
         self.assertEqual(documents[1]["materials"][:2], documents[0]["materials"])
         self.assertEqual(len(documents[1]["images"]), 1)
-        with self.assertWarnsRegex(UserWarning, "left out: materials but their names"):
+        with self.assertWarnsRegex(UserWarning, "prop.obj: left out: doubleSided, second texture coordinates; a .ply"):
             s.save(self.path("prop.obj"))
+        again = kerf.load(self.path("prop.obj"))
+        again.save(self.path("again.glb"))
+        with open(self.path("again.glb"), "rb") as file:
+            data = file.read()
+        document = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])
+        self.assertEqual([m["name"] for m in document["materials"]], [m["name"] for m in documents[0]["materials"]])
+        self.assertEqual(len(document["images"]), 1)
 
     def test_what_is_left_out_is_a_warning(self):
         with open(self.path("lines.obj"), "w") as file:

@@ -175,6 +175,50 @@ contract)
   quietly kerf-info --check -q vdb.kerf
   kerf-sample block.ply -n 500 --levels 3 --pattern blue --json -o figures.pcd | grep -q '^{"nodes":500,.*"levels":\[{"spacing":.*"thinnest":null,"too_thin":null,"seconds":{"read":' || fail "kerf-sample --json"
   ;;
+scans)
+  # Points of a sphere, with colours and noise far away: a solid near them; half a sphere: the filled half is told.
+  python3 - <<'END'
+import math, random
+random.seed(7)
+rows = []
+for i in range(4000):
+    z = 1 - (2 * i + 1) / 4000
+    a, r = i * math.pi * (3 - 5 ** 0.5), (1 - z * z) ** 0.5
+    rows.append((r * math.cos(a), r * math.sin(a), z))
+with open("ball.xyz", "w") as f:
+    for x, y, z in rows:
+        f.write(f"{x} {y} {z} {255 if z > 0 else 0} 0 {0 if z > 0 else 255}\n")
+with open("noisy.xyz", "w") as f:
+    for x, y, z in rows + [(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(2, 4)) for _ in range(20)]:
+        f.write(f"{x} {y} {z}\n")
+with open("half.xyz", "w") as f:
+    for x, y, z in rows:
+        if z > -0.3:
+            f.write(f"{x} {y} {z} {x} {y} {z}\n")
+END
+  kerf-repair ball.xyz --json -o ball.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert abs(r["volume"] - 4.18879) < 0.05 and r["median"] < 0.01 and r["upper"] < 0.02 and r["unseen"] == 0, r' || fail "a ball"
+  kerf-info --check --json ball.ply | grep -q '"attributes":\["color"\]' || fail "colours of a scan"
+  quietly kerf-repair -q ball.xyz -j1 -o again.ply
+  quietly kerf-repair -q ball.xyz -o - >piped.ply
+  cmp ball.ply again.ply && cmp ball.ply piped.ply || fail "a scan twice"
+  kerf-repair noisy.xyz -o noisy.ply 2>said.txt || fail "kerf-repair of a scan: $(cat said.txt)"
+  grep -q 'points, [0-9]* outliers left out, normals estimated; surface of depth [0-9]*, from the points' said.txt || fail "kerf-repair says: $(cat said.txt)"
+  kerf-info --check --json noisy.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 1 and abs(r["volume"] - 4.18879) < 0.1, r' || fail "a ball with outliers"
+  kerf-repair half.xyz -o half.ply 2>said.txt || fail "kerf-repair of half a scan: $(cat said.txt)"
+  grep -q '1 region without points filled, [0-9.]* % of the area: look there first' said.txt || fail "kerf-repair says: $(cat said.txt)"
+  kerf-info --check -q half.ply || fail "half a scan"
+  expect 2 "--depth must be from 4 to 12" kerf-repair ball.xyz --depth 3 -o x.ply
+  head -n 5 ball.xyz >few.xyz
+  expect 65 "few.xyz: has fewer than ten points" kerf-repair few.xyz -o x.ply
+  { head -n 5 ball.xyz; echo "1 2"; } >short.xyz
+  expect 65 "short.xyz:6: a point has 2 numbers, not 6" kerf-repair short.xyz -o x.ply
+  # Nine points at one place and three others: without outliers too few are left.
+  { for i in 1 2 3 4 5 6 7 8 9 10 11; do echo "0 0 0"; done; echo "1 0 0"; } >twins.xyz
+  expect 65 "twins.xyz: has most of its points several times" kerf-repair twins.xyz --outliers 0 -o x.ply
+  [ ! -e x.ply ] || fail "a partial file"
+  # PCL is loaded for scans alone.
+  ldd "$(command -v kerf-repair)" | grep -q pcl && fail "kerf-repair loads PCL"
+  ;;
 repairs)
   # Overlapping boxes, one of them open, with a group each: closed as they are, one solid when wrapped.
   box='1 3 4 2\n5 6 8 7\n1 2 6 5\n2 4 8 6\n4 3 7 8\n3 1 5 7'

@@ -194,6 +194,27 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options =
 /// to 1 inside. For samples and tests. Throws OutputError.
 void write_level_set(const std::string& path, const TriangleMesh& solid, double voxel, bool fog = false);
 
+// ---- Scans: points of a surface.
+
+/// Points of a scan. Normals and colours are as long as the positions, or empty.
+struct PointCloud {
+  std::vector<Vec3> position;
+  std::vector<Vec3> normal;  ///< of length 1, out of the material
+  std::vector<Color> color;
+  std::size_t left_out = 0;  ///< points of the file without a finite place or a normal
+};
+
+/// Whether a file holds points of a scan: PCD, PLY without faces, or text (.xyz, .pwn, .pts, .asc,
+/// .csv) by the ending of its name.
+bool holds_points(const std::string& bytes, const std::string& name);
+/// Reads a scan. PCD may be ASCII, binary or compressed. In text, three numbers of a line are a
+/// place; three more are colours if all are integers up to 255, else a normal.
+///
+/// Throws InputError for malformed and truncated files, and for files of nodes.
+PointCloud parse_points(const std::string& bytes, const std::string& name);
+/// The same from a file ("-": standard input).
+PointCloud read_points(const std::string& path);
+
 // ---- Nodes: PCD, which pcl_viewer opens, and PLY.
 
 /// Reads PCD (ASCII or binary) or PLY ("-": standard input) with the fields x, y, z, radius,

@@ -227,6 +227,21 @@ void save_bonds(Complex& self, const Path& path, double strength) {
   });
 }
 
+py::object rows_of(const std::vector<geo::Vec3>& rows) {
+  if (rows.empty()) return py::none();
+  py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), py::ssize_t(3)});
+  std::copy_n(rows[0].data(), 3 * rows.size(), out.mutable_data());
+  return out;
+}
+
+// Positions, normals and colours, the latter two None where there are none.
+py::tuple read_points(const Path& path) {
+  const geo::PointCloud cloud = without_gil([&] { return geo::read_points(path.text); });
+  std::vector<geo::Vec3> colors;
+  for (const geo::Color& c : cloud.color) colors.push_back(c.head<3>());
+  return py::make_tuple(rows_of(cloud.position), rows_of(cloud.normal), rows_of(colors));
+}
+
 std::string kind_name(const Path& path) {
   const auto bytes = without_gil([&] { return geo::read_all(path.text); });
   static constexpr const char* names[] = {"body", "nodes", "fronts", "surface"};
@@ -299,6 +314,7 @@ void bind_surface_files(py::module_& module) {
            "withstands.\n"
            "Raises OutputError, InputError.");
   module.def("_kind", &kind_name, py::arg("path"));
+  module.def("_read_points", &read_points, py::arg("path"));
   module.def("_load_surface", &any_surface, py::arg("path"), py::arg("unit") = "");
 }
 

@@ -34,8 +34,8 @@ struct Result {
   Stats stats;
 };
 
-/// The surface of a scan. Outliers are left out, normals are estimated and oriented where there are
-/// none, and a surface is fitted (Kazhdan and Hoppe 2013). It has the colours of the nearest points.
+/// The surface of a scan. Outliers are left out, and normals are estimated where there are none. A
+/// surface is fitted (Kazhdan and Hoppe 2013), and has the colours of the nearest points.
 ///
 /// Throws InputError for fewer than ten points, or where they make no surface; also where the
 /// module or PCL is missing.

@@ -124,10 +124,7 @@ class Cutting {
 
   void write(const std::string& target) const {
     const auto mesh = cut_surface();
-    if (target.ends_with(".obj")) tool::say_left_out_of_obj(mesh, target, t_);
-    geo::write_all(target, [&](std::ostream& out) {
-      target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, states_, "kerf-crack");
-    });
+    tool::write_surface(mesh, states_, target, t_);
     if (t_.json) (target == "-" ? std::cerr : std::cout) << '[' << json_ << "]\n";
     if (!t_.verbose) return;
     const auto cracks = static_cast<std::size_t>(complex_.crack_count());

@@ -1,6 +1,7 @@
 // kerf-pieces: writes pieces as closed meshes, and the bonds between them: a folder, a .glb or USD.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -78,9 +79,42 @@ geo::GlbOptions glb_options(const Command& w) {
   return options;
 }
 
+constexpr const char* materials_file = "materials.mtl";
+
+// The library of the first chunk that has one.
+geo::MaterialLibrary library_of(const std::vector<geo::Chunk>& chunks) {
+  for (const geo::Chunk& chunk : chunks)
+    if (chunk.mesh.attributes.library.glb) return chunk.mesh.attributes.library;
+  return {};
+}
+
+// Writes the materials of all pieces with their images, if there are some. All pieces name them.
+bool write_materials(const fs::path& folder, const std::vector<geo::Chunk>& chunks, const tool::Tool& t) {
+  const geo::MaterialLibrary library = library_of(chunks);
+  if (!library.glb) return false;
+  std::vector<std::string> groups;
+  for (const geo::Chunk& chunk : chunks)
+    for (const std::string& name : chunk.mesh.attributes.group_names)
+      if (std::find(groups.begin(), groups.end(), name) == groups.end()) groups.push_back(name);
+  const geo::MtlFiles files = geo::mtl_files(groups, library, "");
+  for (const geo::BesideFile& image : files.images) geo::write_beside(folder.string(), image);
+  geo::write_beside(folder.string(), {materials_file, files.mtl});
+  tool::say_left_out(files.left_out, t.output_path, ".glb", t);
+  return true;
+}
+
+// Writes the images of a .usda beside it, and returns the beginning of their names.
+std::string write_textures(const std::string& path, const std::vector<geo::Chunk>& chunks, const tool::Tool& t) {
+  const std::string prefix = fs::path(path).stem().string() + "_";
+  const geo::ImageFiles files = geo::image_files(library_of(chunks), prefix);
+  for (const geo::BesideFile& image : files.images) geo::write_beside(fs::path(path).parent_path().string(), image);
+  tool::say_left_out(files.left_out, path, ".glb", t);
+  return prefix;
+}
+
 // Writes a temporary folder, then renames it.
 void write_folder(fs::path folder, const Command& w, const std::vector<geo::Chunk>& chunks,
-                  const std::vector<geo::Bond>& bonds, geo::ChunkLabels labels) {
+                  const std::vector<geo::Bond>& bonds, geo::ChunkLabels labels, const tool::Tool& t) {
   if (folder.filename().empty()) folder = folder.parent_path();
   std::error_code error;
   const fs::path aside = folder.string() + "." + std::to_string(::getpid()) + ".tmp";
@@ -88,8 +122,10 @@ void write_folder(fs::path folder, const Command& w, const std::vector<geo::Chun
   if (!fs::create_directories(aside, error))
     throw geo::OutputError(folder.string() + ": cannot be made (" + error.message() + ")");
   const char* end = w.obj ? ".obj" : ".ply";
+  const bool materials = write_materials(aside, chunks, t);
   const auto write = [&](const std::string& name, geo::TriangleMesh mesh) {
     mesh.attributes.library = {};  // images would be in the file of each piece
+    mesh.attributes.materials = materials ? materials_file : "";
     geo::write_all((aside / name).string(),
                    [&](std::ostream& out) { w.obj ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh); });
   };
@@ -116,13 +152,17 @@ void require_new_folder(const std::string& path) {
 }
 
 void write(const std::string& path, const Command& w, const std::vector<geo::Chunk>& chunks,
-           const std::vector<geo::Bond>& bonds, geo::ChunkLabels labels) {
+           const std::vector<geo::Bond>& bonds, geo::ChunkLabels labels, const tool::Tool& t) {
   const bool usd = path.ends_with(".usda");
-  if (!usd && !path.ends_with(".glb")) return write_folder(path, w, chunks, bonds, std::move(labels));
+  if (!usd && !path.ends_with(".glb")) return write_folder(path, w, chunks, bonds, std::move(labels), t);
   labels.kind = "node";
   labels.names = geo::piece_names(chunks.size());
+  geo::UsdOptions stage;
+  stage.z_up = w.up == "z";
+  stage.hull_parts = static_cast<std::size_t>(w.hull_parts);
+  if (usd) stage.image_prefix = write_textures(path, chunks, t);
   geo::write_all(path, [&](std::ostream& out) {
-    usd ? geo::write_usd_pieces(out, chunks, bonds, labels, {w.up == "z", static_cast<std::size_t>(w.hull_parts)})
+    usd ? geo::write_usd_pieces(out, chunks, bonds, labels, stage)
         : geo::write_glb(out, chunks, bonds, labels, glb_options(w));
   });
   if (w.bonds.empty()) return;
@@ -139,8 +179,6 @@ void say_assumptions(const tool::Tool& t, const Command& w, const std::vector<ge
   const geo::TriangleMesh& mesh = chunks[0].mesh;
   if (mesh.unit == 0 && (usd || w.physics != "none"))
     t.say("kerf-pieces: " + w.model + ": states no unit; one is taken as a metre, and --unit gives another");
-  if (!glb && mesh.attributes.library.glb)
-    t.say("kerf-pieces: " + path + ": left out: materials but their names, which a .glb keeps");
   if (!usd && !glb) return;
   const geo::PieceSet set = glb ? geo::in_metres(chunks, {}, {}) : geo::PieceSet{chunks, {}, {}};
   const geo::Vec3 offset = geo::single_precision_offset(geo::bounding_box(set.chunks));
@@ -229,7 +267,7 @@ int main(int argc, char** argv) {
     labels.density = w.density;
     labels.levels = geo::make_hierarchy(found.volume, bonds, static_cast<std::size_t>(w.levels));
     say_assumptions(t, w, chunks);
-    write(t.output_path, w, chunks, bonds, labels);
+    write(t.output_path, w, chunks, bonds, labels, t);
     report(t, w, found.count, bonds.size(), small, labels.levels);
   });
 }

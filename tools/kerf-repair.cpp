@@ -1,6 +1,7 @@
 // kerf-repair: makes a valid solid from a surface with faults, or wraps it in a new surface.
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include <kerf/check.h>
 #include <kerf/crack.h>
@@ -8,6 +9,7 @@
 #include <kerf/mesh.h>
 #include <kerf/repair.h>
 #include "model.h"
+#include "scan/scan.h"
 #include "tool.h"
 
 namespace {
@@ -17,9 +19,11 @@ struct Command {
   double weld = 0, voxel = 0, edge = 0, unit = 0;
   bool smooth = false;
   std::string inner = "oriented", open = "auto";
+  scan::Options scan;
 };
 
 struct Outcome {
+  std::optional<scan::Stats> scan;
   geo::SolidRepairStats solid;
   geo::OpenSheetStats sheets;  // with --voxel
 };
@@ -51,6 +55,20 @@ std::string in_words(const geo::RepairStats& r) {
                                    : "(" + std::to_string(r.smooth_fills) + " smoothly) ";
   add(r.filled_holes, "hole", "holes", smoothly + "closed with " + counted(r.added_triangles, "triangle", "triangles"));
   if (const std::string shells = tool::shell_decisions(r); !shells.empty()) text += (text.empty() ? "" : ", ") + shells;
+  return text;
+}
+
+std::string in_words(const scan::Stats& scan, double diagonal) {
+  const auto percent = [&](double share) { return tool::rounded(100 * share) + " %"; };
+  std::string text = tool::counted(scan.points, "point");
+  if (scan.outliers > 0) text += ", " + tool::counted(scan.outliers, "outlier") + " left out";
+  if (scan.estimated) text += ", normals estimated";
+  text += "; surface of depth " + std::to_string(scan.depth) + ", from the points " + percent(scan.median / diagonal) +
+          " of the diagonal (median), " + percent(scan.upper / diagonal) + " (95 of 100)";
+  if (scan.blobs > 0) text += "; " + tool::counted(scan.blobs, "part") + " without points left out";
+  if (scan.holes > 0)
+    text += "; " + tool::counted(scan.holes, "region") + " without points filled, " + percent(scan.hole_share) +
+            " of the area: look there first";
   return text;
 }
 
@@ -93,7 +111,35 @@ std::string figures(const Outcome& done, const geo::TriangleMesh& mesh) {
   count("vertices", mesh.vertices.size());
   count("faces", mesh.triangles.size());
   add("volume", tool::number(geo::signed_volume(mesh)));
+  if (done.scan) {
+    count("points", done.scan->points);
+    count("outliers", done.scan->outliers);
+    count("depth", static_cast<std::size_t>(done.scan->depth));
+    count("unseen", done.scan->holes);
+    add("unseen_share", tool::number(done.scan->hole_share));
+    add("median", tool::number(done.scan->median));
+    add("upper", tool::number(done.scan->upper));
+  }
   return text + "}";
+}
+
+// The model's mesh, made of its points where the file is a scan.
+geo::TriangleMesh read_model(const Command& w, Outcome& done) {
+  const std::string bytes = geo::read_all(w.model);
+  if (!geo::holds_points(bytes, w.model)) return tool::parse_surface(bytes, w.model).mesh;
+  const geo::PointCloud cloud = geo::parse_points(bytes, w.model);
+  if (cloud.left_out > 0) {
+    geo::SurfaceFile about;
+    about.notes.push_back("left out: " + tool::counted(cloud.left_out, "point") + " without a place or a normal");
+    tool::say_notes(about, w.model);
+  }
+  try {
+    scan::Result result = scan::reconstruct(cloud, w.scan);
+    done.scan = result.stats;
+    return std::move(result.mesh);
+  } catch (const geo::InputError& error) {
+    throw geo::InputError(w.model + ": " + error.what());
+  }
 }
 
 // Throws InputError for a mesh of which nothing can be made, whatever the options.
@@ -140,10 +186,12 @@ int main(int argc, char** argv) {
   kerf-repair scan.stl --weld 1e-5 -o solid.ply
   kerf-repair scan.ply --smooth -o solid.ply
   kerf-repair parts.obj --voxel 0.005 -o solid.ply
+  kerf-repair scan.pcd -o solid.ply
   kerf-repair part.stl --edge 0.03 -o fine.ply
   kerf-repair prop.obj | kerf-score - --pieces 30 -o score.front)");
   Command w;
-  t.argument("MODEL", w.model, "Surface (PLY, OBJ, STL, OFF, glTF, FBX); - reads standard input");
+  t.argument("MODEL", w.model,
+             "Surface (PLY, OBJ, STL, OFF, glTF, FBX), or points of a scan (PCD, PLY, XYZ); - reads standard input");
   t.option("--weld", w.weld, "Also weld open vertices up to this fraction of the model's diagonal apart");
   t.flag("--smooth", w.smooth, "Close holes by patches that go on from the surface around them, as fine as their rims");
   t.option("--voxel", w.voxel,
@@ -153,31 +201,38 @@ int main(int argc, char** argv) {
   t.choice("--open", w.open, {"auto", "closed", "sheets"},
            "With --voxel, parts with open edges: plates where closing them takes half their area; closed; plates");
   t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
+  t.option("--outliers", w.scan.outliers,
+           "Of a scan: leave out points whose neighbours are farther than the mean by this many standard deviations; "
+           "0: none");
+  t.option(
+      "--depth", w.scan.depth,
+      "Of a scan: finest cells have this power of a half of its size, from 4 to 12; 0: by the spacing of its points");
   t.unit_option(w.unit, "Unit of the model's coordinates, which the output states: m, cm, mm, in, ft ...");
-  t.output("The solid (PLY; .obj on request)", {".ply", ".obj"});
+  t.output("The solid (PLY; .obj, .stl or .off on request)", {".ply", ".obj", ".stl", ".off"});
   return t.run(argc, argv, [&] {
     if (!(w.weld >= 0 && w.weld <= 0.1)) throw tool::UsageError("--weld must be from 0 to 0.1");
     if (w.voxel != 0 && !(w.voxel >= 0.0005 && w.voxel <= 0.1))
       throw tool::UsageError("--voxel must be from 0.0005 to 0.1, or 0");
     if (w.edge != 0 && !(w.edge >= 0.0005 && w.edge <= 1))
       throw tool::UsageError("--edge must be from 0.0005 to 1, or 0");
+    if (!(w.scan.outliers >= 0 && w.scan.outliers <= 1000)) throw tool::UsageError("--outliers must be from 0 to 1000");
+    if (w.scan.depth != 0 && (w.scan.depth < 4 || w.scan.depth > 12))
+      throw tool::UsageError("--depth must be from 4 to 12, or 0");
     const std::string target = t.target(true);
-    geo::TriangleMesh mesh = tool::read_surface(w.model).mesh;
+    Outcome done;
+    geo::TriangleMesh mesh = read_model(w, done);
     if (w.unit > 0) mesh.unit = w.unit;
     if (mesh.two_sided())
       throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     require_triangles(w.model, mesh);
     const double diagonal = geo::bounding_box(mesh).diagonal();
-    Outcome done;
     mesh = solid_of(w, std::move(mesh), diagonal, done);
-    if (target.ends_with(".obj")) tool::say_left_out_of_obj(mesh, target, t);
-    geo::write_all(target, [&](std::ostream& out) {
-      target.ends_with(".obj") ? geo::write_obj(out, mesh) : geo::write_ply(out, mesh, {}, "kerf-repair");
-    });
+    tool::write_surface(mesh, {}, target, t);
     if (t.json)
       (target == "-" ? std::cerr : std::cout) << figures(done, mesh) << '\n';
     else
-      t.say("kerf-repair: " + w.model + ": " + in_words(done, w) +
+      t.say("kerf-repair: " + w.model + ": " + (done.scan ? in_words(*done.scan, diagonal) + "; " : "") +
+            in_words(done, w) +
             (w.voxel > 0 ? "; wrapped in " + std::to_string(mesh.triangles.size()) + " triangles" : "") +
             (w.edge > 0 ? "; divided into " + std::to_string(mesh.triangles.size()) + " triangles" : ""));
   });

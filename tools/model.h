@@ -9,6 +9,7 @@
 #include <kerf/complex.h>
 #include <kerf/crack.h>
 #include <kerf/error.h>
+#include <kerf/export.h>
 #include <kerf/files.h>
 #include <kerf/repair.h>
 #include "tool.h"
@@ -103,17 +104,36 @@ inline void for_scene(geo::TriangleMesh& mesh, const std::string& path, double s
   mesh.unit = mesh.unit > 0 ? 1 : 0;
 }
 
-/// Says what an OBJ file cannot hold of a surface: materials of a .glb, second texture coordinates,
-/// a unit.
-inline void say_left_out_of_obj(const geo::TriangleMesh& mesh, const std::string& path, const Tool& t) {
-  std::string things;
-  const auto add = [&](bool has, const char* what) {
-    if (has) things += (things.empty() ? "" : ", ") + std::string(what);
-  };
-  add(mesh.attributes.library.glb != nullptr, "materials but their names");
-  add(!mesh.attributes.uv2.empty(), "second texture coordinates");
-  add(mesh.unit > 0 && mesh.unit != 1, "the unit");
-  if (!things.empty()) t.say(t.name() + ": " + path + ": left out: " + things + "; a .ply keeps them");
+/// Says what a format does not hold of a surface; nothing where `things` is empty.
+inline void say_left_out(const std::vector<std::string>& things, const std::string& path, const std::string& keeps,
+                         const Tool& t) {
+  std::string text;
+  for (const std::string& thing : things) text += (text.empty() ? "" : ", ") + thing;
+  if (!text.empty()) t.say(t.name() + ": " + path + ": left out: " + text + "; a " + keeps + " keeps them");
+}
+
+/// Says what STL and OFF do not hold. Throws InputError where single precision is too coarse.
+inline void say_left_out_of_plain(const geo::TriangleMesh& mesh, const std::string& path, const Tool& t) {
+  if (path.ends_with(".stl") && !geo::single_precision_offset(geo::bounding_box(mesh)).isZero(0))
+    throw geo::InputError(path + ": the model is too far from the origin for single precision; write a .ply");
+  std::vector<std::string> things;
+  if (!mesh.attributes.empty() || !mesh.patch.empty()) things.push_back("all but vertices and faces");
+  if (mesh.unit > 0 && mesh.unit != 1) things.push_back("the unit");
+  say_left_out(things, path, ".ply", t);
+}
+
+/// Writes a surface in the format that the ending of `path` names, PLY without one, with materials
+/// beside an OBJ. Says what the format does not hold.
+inline void write_surface(const geo::TriangleMesh& mesh, const std::vector<geo::FrontState>& fronts,
+                          const std::string& path, const Tool& t) {
+  if (path.ends_with(".obj")) return say_left_out(geo::save_obj(path, mesh), path, ".ply", t);
+  const bool stl = path.ends_with(".stl"), off = path.ends_with(".off");
+  if (stl || off) say_left_out_of_plain(mesh, path, t);
+  geo::write_all(path, [&](std::ostream& out) {
+    if (stl) return geo::write_stl(out, mesh);
+    if (off) return geo::write_off(out, mesh);
+    geo::write_ply(out, mesh, fronts, t.name());
+  });
 }
 
 /// The complex of a surface from a file. Errors begin with the file's name.

@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "io/image_type.h"
 #include "io/shown.h"
 
 namespace geo {
@@ -24,15 +25,6 @@ void for_each_object(Json& value, const std::string& key,
 }
 
 bool names_texture(const std::string& key) { return key.ends_with("Texture") || key.ends_with("texture"); }
-
-// The type of an image by its first bytes; empty: unknown.
-std::string media_type(std::string_view bytes) {
-  if (bytes.starts_with("\x89PNG")) return "image/png";
-  if (bytes.starts_with("\xff\xd8")) return "image/jpeg";
-  if (bytes.starts_with("\xabKTX 20")) return "image/ktx2";
-  if (bytes.starts_with("RIFF") && bytes.substr(8, 4) == "WEBP") return "image/webp";
-  return {};
-}
 
 // Numbers entries in the order in which they are first named.
 class Numbers {
@@ -142,7 +134,7 @@ class Copier {
     const auto view = from_.index(description, "bufferView");
     const std::string bytes =
         view ? std::string(from_.view(*view)) : from_.at_uri(GltfDocument::text(description, "uri"));
-    std::string type = media_type(bytes);
+    std::string type = image_type(bytes);
     if (type.empty()) type = GltfDocument::text(description, "mimeType");
     if (type.empty())
       from_.fail("has image " + std::to_string(image) + " of an unknown format; save it as PNG or JPEG");

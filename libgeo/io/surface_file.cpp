@@ -4,8 +4,10 @@
 #include "kerf/files.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "io/line_reader.h"
+#include "io/mtl.h"
 #include "io/surface_formats.h"
 #include "io/surface_other.h"
 #include "kerf/body_file.h"
@@ -24,6 +26,15 @@ bool looks_like_obj(const std::string& bytes) {
     if (words.size() > 1 && std::find(std::begin(keywords), std::end(keywords), words[0]) != std::end(keywords))
       return true;
   return false;
+}
+
+// Materials of a .mtl that a PLY names, where it is there: a folder of pieces has one.
+void add_named_materials(SurfaceFile& file, const std::string& name) {
+  const std::string& materials = file.mesh.attributes.materials;
+  std::error_code failed;
+  if (materials.empty() || !std::filesystem::exists(std::filesystem::path(name).parent_path() / materials, failed))
+    return;
+  add_mtl_library(file.mesh, {materials}, name, file.notes);
 }
 
 // UTF-16 that begins with its byte order mark, as UTF-8 without it; empty for other bytes. Units
@@ -96,9 +107,10 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
   SurfaceFile file;
   if (is_exact_binary_stl(bytes))  // whatever its header begins with
     file.mesh = parse_stl(bytes, name, file.notes);
-  else if (bytes.rfind("ply", 0) == 0)
+  else if (bytes.rfind("ply", 0) == 0) {
     file = parse_surface_ply(bytes, name);
-  else if (looks_like_kerf(bytes))
+    add_named_materials(file, name);
+  } else if (looks_like_kerf(bytes))
     throw InputError(name + ": is a body (.kerf); give the surface that it was made of, or that it was cut by");
   else if (const OtherFormat other = other_format(bytes, name); !other.what.empty())
     file = parse_other(bytes, name, other);

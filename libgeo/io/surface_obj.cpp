@@ -5,6 +5,7 @@
 #include <map>
 
 #include "io/line_reader.h"
+#include "io/mtl.h"
 #include "io/surface_formats.h"
 
 namespace geo {
@@ -40,6 +41,7 @@ class ObjReader {
     for (const Face& face : faces_) add_triangles(face);
     add_attributes();
     add_notes();
+    if (any_material_) add_mtl_library(mesh_, material_files_, name_, notes_);
     return std::move(mesh_);
   }
 
@@ -70,7 +72,8 @@ class ObjReader {
       part_ = rest_of(words_);
       any_part_ = true;
     } else if (words_[0] == "mtllib") {
-      mesh_.attributes.materials = rest_of(words_);
+      material_files_.push_back(rest_of(words_));
+      mesh_.attributes.materials = material_files_.back();
     } else if (words_[0] == "f" || words_[0] == "fo") {  // fo: of old versions
       read_face();
     } else if (words_[0] == "l") {
@@ -209,6 +212,7 @@ class ObjReader {
   bool colored_ = false, any_uv_ = false, any_normal_ = false, any_material_ = false, any_part_ = false;
   Names materials_, parts_;
   std::string material_, part_;  // of the faces that follow
+  std::vector<std::string> material_files_;
   std::vector<Corner> corners_;
   std::vector<Face> faces_;
   std::size_t next_ = 0;  // first corner of the next face to be divided

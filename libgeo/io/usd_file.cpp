@@ -163,7 +163,7 @@ void write_usda(std::ostream& out, const UsdRun& run) {
   body("int[] primvars:patch", patches_of);
   if (!last.attributes.uv.empty()) {
     out << "        texCoord2f[] primvars:st (\n            interpolation = \"faceVarying\"\n        )\n";
-    body("texCoord2f[] primvars:st", uv_of);
+    body("texCoord2f[] primvars:st", [](const TriangleMesh& m) { return uv_of(m.attributes.uv); });
   }
   add_subset(out, "skin", cut, rows, false);
   add_subset(out, "crack", cut, rows, true);

@@ -3,9 +3,12 @@
 //
 // Axes of joints and bodies are those of the stage, as nodes of pieces are translated only. So both
 // local rotations of a joint are the identity.
+#include <algorithm>
 #include <map>
 
 #include "io/piece_json.h"
+#include "io/preview_material.h"
+#include "io/usd_material.h"
 #include "io/usd_text.h"
 #include "kerf/error.h"
 #include "kerf/export.h"
@@ -43,7 +46,12 @@ std::string usd_tuple(const Row& row) {
 class UsdStage {
  public:
   explicit UsdStage(std::ostream& out) : out_(out) {}
-  void line(const std::string& text) { out_ << std::string(4 * depth_, ' ') << text << '\n'; }
+  /// A brace alone begins or ends a level.
+  void line(const std::string& text) {
+    if (text == "}") --depth_;
+    out_ << std::string(4 * depth_, ' ') << text << '\n';
+    if (text == "{") ++depth_;
+  }
   /// Begins a prim with schemas that are applied to it.
   void begin(const std::string& type, const std::string& name, const std::vector<std::string>& schemas = {}) {
     std::string head = "def " + type + " \"" + name + "\"";
@@ -54,12 +62,8 @@ class UsdStage {
     }
     line(head);
     line("{");
-    ++depth_;
   }
-  void end() {
-    --depth_;
-    line("}");
-  }
+  void end() { line("}"); }
   void translate(const Vec3& by) {
     std::string text;
     add_translation(text, std::string(4 * depth_, ' '), by);
@@ -100,6 +104,11 @@ class UsdPieces {
         offset_(single_precision_offset(bounding_box(chunks))),
         centroids_(cluster_centroids(chunks, labels.levels)),
         paths_(chunks.size()) {
+    for (const Chunk& chunk : chunks)
+      if (const MaterialLibrary& library = chunk.mesh.attributes.library; library.glb && library_.materials.empty())
+        library_ = preview_materials(library);
+    for (const PreviewMaterial& material : library_.materials) described_.try_emplace(material.name, &material);
+    if (!options.image_prefix.empty()) images_ = image_file_names(library_, options.image_prefix);
     std::string unit;
     add_number(unit, unit_);
     out << "#usda 1.0\n(\n    defaultPrim = \"pieces\"\n    kilogramsPerUnit = 1\n    metersPerUnit = " << unit
@@ -122,7 +131,11 @@ class UsdPieces {
       stage_.end();
     }
     stage_.begin("Scope", "materials");
-    for (const auto& [group, name] : materials_.all()) material(name, group == crack_group);
+    for (const auto& [group, name] : materials_.all()) {
+      const auto at = described_.find(group);
+      write_material([&](const std::string& text) { stage_.line(text); }, "/pieces/materials", name,
+                     at != described_.end() ? *at->second : plain_material(group), images_);
+    }
     stage_.end();
     stage_.end();
   }
@@ -165,6 +178,7 @@ class UsdPieces {
     Box3 box;
     for (const Vec3& v : m.vertices) box.add(v);
     stage_.line("uniform token subdivisionScheme = \"none\"");
+    if (double_sided(m)) stage_.line("uniform bool doubleSided = 1");
     stage_.line("float3[] extent = [" + usd_tuple(box.lo) + ", " + usd_tuple(box.hi) + "]");
     stage_.line("point3f[] points = " + points_of(m));
     stage_.line("int[] faceVertexCounts = " + counts_of(m));
@@ -173,7 +187,9 @@ class UsdPieces {
     std::string text;
     add_list(text, 3 * normals.size(), [&](std::size_t i) { add_tuple(text, normals[i / 3][i % 3]); });
     stage_.line("normal3f[] normals = " + text + " (interpolation = \"faceVarying\")");
-    stage_.line("texCoord2f[] primvars:st = " + uv_of(m) + " (interpolation = \"faceVarying\")");
+    stage_.line("texCoord2f[] primvars:st = " + uv_of(m.attributes.uv) + " (interpolation = \"faceVarying\")");
+    if (!m.attributes.uv2.empty())
+      stage_.line("texCoord2f[] primvars:st1 = " + uv_of(m.attributes.uv2) + " (interpolation = \"faceVarying\")");
     stage_.line("int[] primvars:patch = " + patches_of(m) + " (interpolation = \"uniform\")");
     if (!m.attributes.color.empty()) {
       text.clear();
@@ -201,6 +217,15 @@ class UsdPieces {
     }
   }
 
+  // USD has it for meshes, glTF for materials.
+  bool double_sided(const TriangleMesh& m) const {
+    const auto& names = m.attributes.group_names;
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      const auto at = described_.find(name);
+      return at != described_.end() && at->second->double_sided;
+    });
+  }
+
   void joint(const Bond& bond) {
     stage_.begin("PhysicsFixedJoint", identifier(labels_.names[bond.a] + "_" + labels_.names[bond.b]));
     stage_.line("rel physics:body0 = <" + paths_[bond.a] + ">");
@@ -213,19 +238,6 @@ class UsdPieces {
     stage_.line("float physics:breakTorque = " + usd_number(labels_.strength * unit_ * bond.section));
     // Bonds make loops, which an articulation must not have.
     stage_.line("uniform bool physics:excludeFromArticulation = 1");
-    stage_.end();
-  }
-
-  void material(const std::string& name, bool crack) {
-    const std::string path = "</pieces/materials/" + name;
-    stage_.begin("Material", name);
-    stage_.line("token outputs:surface.connect = " + path + "/preview.outputs:surface>");
-    stage_.begin("Shader", "preview");
-    stage_.line("uniform token info:id = \"UsdPreviewSurface\"");
-    stage_.line(std::string("color3f inputs:diffuseColor = ") + (crack ? "(0.42, 0.36, 0.31)" : "(0.8, 0.8, 0.8)"));
-    stage_.line("float inputs:roughness = 0.9");
-    stage_.line("token outputs:surface");
-    stage_.end();
     stage_.end();
   }
 
@@ -242,6 +254,9 @@ class UsdPieces {
   std::vector<std::vector<std::vector<std::size_t>>> below_;  // members of clusters, by level
   std::vector<std::string> paths_;                            // of pieces
   MaterialNames materials_;
+  PreviewMaterials library_;
+  std::map<std::string, const PreviewMaterial*> described_;  // of the library, by name
+  std::vector<std::string> images_;                          // files of the library's images
 };
 
 }  // namespace

@@ -81,10 +81,9 @@ inline std::string patches_of(const TriangleMesh& m) {
   return text;
 }
 
-/// The texture coordinates of all corners.
-inline std::string uv_of(const TriangleMesh& m) {
+/// Texture coordinates of all corners.
+inline std::string uv_of(const std::vector<std::array<Vec2, 3>>& uv) {
   std::string text;
-  const auto& uv = m.attributes.uv;
   add_list(text, 3 * uv.size(), [&](std::size_t i) { add_tuple(text, uv[i / 3][i % 3]); });
   return text;
 }

@@ -1,4 +1,6 @@
 """Files: what load() reads is decided by content."""
+import warnings
+
 from kerf import _kerf
 
 
@@ -50,3 +52,31 @@ def _save_score(self, path):
 
 
 _kerf.Score.save = _save_score
+
+
+def read_points(path):
+    """The points of a scan: three arrays, positions (n, 3), normals (n, 3) or None, colours (n, 3) from 0 to 1 or None.
+
+    Reads PCD, PLY without faces, and text with a point on each line (.xyz, .pwn, .pts, .asc, .csv). Points that are not
+    finite are left out. Raises InputError, with the line, for a malformed file.
+    """
+    return _kerf._read_points(path)
+
+
+def reconstruct(points, normals=None, colors=None, outliers=3.0, depth=0, progress=None):
+    """The Solid whose surface passes near the points of a scan, as kerf-repair makes it (docs/tools/kerf-repair.md).
+
+    points, normals and colors: (n, 3) arrays; colours from 0 to 1, or integers up to 255. Normals are estimated where there
+    are none. outliers: standard deviations above the mean distance of neighbours that leave a point out; 0: none. depth: of
+    the octree, 4 to 12; 0: by the spacing of the points. Where the surface fills regions without points, a UserWarning has
+    their share of the area. Raises InputError where the points make no surface or solid, Interrupted.
+    """
+    from kerf import _scan
+    kind = getattr(getattr(colors, "dtype", None), "kind", "f")
+    if colors is not None and kind in "iu":
+        colors = colors / 255
+    mesh, regions, share = _scan.reconstruct(points, normals, colors, outliers, depth, progress)
+    if regions:
+        warnings.warn(f"reconstruct: {regions} region{'s' if regions > 1 else ''} without points filled, {100 * share:.2g} % of the area",
+                      UserWarning, stacklevel=2)
+    return _kerf.Solid.repaired(mesh)

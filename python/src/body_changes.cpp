@@ -213,7 +213,8 @@ void bind_front(py::module_& module) {
 
 constexpr const char* split_doc =
     "Moves a front to next through all seven steps of section 4: crack, graph, new nodes, neighbours, binding.\n\n"
-    "front: from front(). next: (n, 3) points; resampled where their number differs. Options: snap, face_offset,\n"
+    "front: from front(). next: (n, 3) points; resampled where their number differs. Options: snap, snap_edges, "
+    "face_offset,\n"
     "clearance, jitter, attempts, seed, as of Complex.front(). Returns a BodyDelta. Raises InputError; GeometryError "
     "where the step is not possible: body and front are then\n"
     "unchanged.";

@@ -156,7 +156,8 @@ constexpr const char* crack_doc =
     "a\n"
     "list of lines (points, 3), or a list of scores, meshes, planes and fronts. max_move divides steps in which a "
     "front point moves farther, model units; 0: never.\n"
-    "Keywords, with the defaults of CrackOptions: snap, face_offset, clearance and jitter, lengths relative to the\n"
+    "Keywords, with the defaults of CrackOptions: snap, snap_edges, face_offset, clearance and jitter, lengths "
+    "relative to the\n"
     "diagonal; attempts; seed. progress: a callable of (phase, done, total), called before each step; False stops.\n"
     "Raises InputError for what cannot be used, GeometryError where no attempt of a step passes the guard, "
     "Interrupted.";

@@ -210,7 +210,8 @@ void add_to_complex(py::module_& module) {
       .def(
           "front", &begin, py::arg("line"), py::arg("closed") = false, py::arg("name") = "",
           "Begins a front at a line, (n, 3) points in material coordinates: F_0 of § 5.1, without contacts. Its crack\n"
-          "gets the next number. Keywords, with the defaults of CrackOptions: snap, face_offset, clearance and "
+          "gets the next number. Keywords, with the defaults of CrackOptions: snap, snap_edges, face_offset, clearance "
+          "and "
           "jitter,\n"
           "lengths relative to the diagonal; attempts; seed. Raises InputError for fewer than two points (closed:\n"
           "three).")

@@ -6,6 +6,7 @@ namespace kerf_python {
 geo::CrackOptions crack_options(Keywords& keywords) {
   geo::CrackOptions options;
   keywords.take("snap", options.snap, 0, 1);
+  keywords.take("snap_edges", options.snap_edges, 0, 1);
   keywords.take("face_offset", options.face_offset, 0, 1);
   keywords.take("clearance", options.clearance, 0, 1);
   keywords.take("jitter", options.jitter, 0, 1);

@@ -6,7 +6,7 @@
 
 namespace kerf_python {
 
-/// Takes snap, face_offset, clearance, jitter, attempts and seed. Throws as Keywords.
+/// Takes snap, snap_edges, face_offset, clearance, jitter, attempts and seed. Throws as Keywords.
 geo::CrackOptions crack_options(Keywords& keywords);
 /// The counts and seconds of steps, by the names of geo::CrackStats.
 py::dict dict_of(const geo::CrackStats& stats);

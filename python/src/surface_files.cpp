@@ -13,7 +13,6 @@
 #include "kerf/files.h"
 #include "kind.h"
 #include "pieces.h"
-#include "plain_files.h"
 
 namespace kerf_python {
 namespace {
@@ -38,11 +37,13 @@ geo::SurfaceFile with_warnings(geo::SurfaceFile&& file, const std::string& name,
   return std::move(file);
 }
 
-// Warns of what an OBJ file does not hold.
-void warn_of_obj(const geo::TriangleMesh& mesh, const std::string& path) {
-  if (!path.ends_with(".obj") || (!mesh.attributes.library.glb && mesh.attributes.uv2.empty())) return;
-  const std::string text =
-      path + ": left out: materials but their names, second texture coordinates; a .ply keeps them";
+// Writes an OBJ file with its materials beside it, and warns of what it does not hold.
+void save_as_obj(const std::string& path, geo::TriangleMesh&& mesh) {
+  const auto things = without_gil([&] { return geo::save_obj(path, std::move(mesh)); });
+  std::string text;
+  for (const std::string& thing : things) text += (text.empty() ? "" : ", ") + thing;
+  if (text.empty()) return;
+  text = path + ": left out: " + text + "; a .ply keeps them";
   if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
@@ -145,15 +146,14 @@ void save_mesh(const Mesh& self, const Path& path, const std::string& unit_name)
   const auto ends = [&](const char* ending) { return p.ends_with(ending); };
   if (!ends(".ply") && !ends(".obj") && !ends(".glb") && !ends(".stl") && !ends(".off"))
     unknown_ending(p, ".ply, .obj, .glb, .stl or .off");
-  warn_of_obj(self.mesh, p);
+  if (ends(".obj")) return save_as_obj(p, geo::TriangleMesh(self.mesh));
   warn_of_plain(self.mesh, p);
   warn_of_offset(geo::bounding_box(self.mesh), p);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
       if (ends(".ply")) return write_ply(out, self.mesh, unit);
-      if (ends(".obj")) return geo::write_obj(out, self.mesh);
-      if (ends(".stl")) return write_stl(out, self.mesh);
-      if (ends(".off")) return write_off(out, self.mesh);
+      if (ends(".stl")) return geo::write_stl(out, self.mesh);
+      if (ends(".off")) return geo::write_off(out, self.mesh);
       write_glb(out, self, unit);
     });
   });
@@ -195,15 +195,14 @@ void save_complex(Complex& self, const Path& path, const SaveOptions& w, const s
   if (w.corners != 0 && (w.corners < 4 || w.corners > 100000))
     throw geo::InputError("save: corners must be 0 or from 4 to 100000");
   if (w.parts < 1 || w.parts > 1000) throw geo::InputError("save: parts must be from 1 to 1000");
-  if (self.model) warn_of_obj(self.model->mesh, p);
   warn_of_offset(self.complex.extent(), p);
   const Reading reading(self.busy);
+  if (p.ends_with(".obj")) return save_as_obj(p, without_gil([&] { return self.surface(); }));
   const auto found = p.ends_with(".glb") ? self.found() : nullptr;
   std::vector<geo::FrontState> fronts;
   for (const auto& front : self.fronts) fronts.push_back(front->state);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
-      if (p.ends_with(".obj")) return geo::write_obj(out, self.surface());
       if (p.ends_with(".ply")) {
         geo::TriangleMesh mesh = self.surface();
         if (unit > 0) mesh.unit = unit;
@@ -226,6 +225,21 @@ void save_bonds(Complex& self, const Path& path, double strength) {
     const auto e = exported(self, *found, 1, strength);
     geo::write_all(path, [&](std::ostream& out) { geo::write_bonds(out, e.chunks, e.bonds, e.labels); });
   });
+}
+
+py::object rows_of(const std::vector<geo::Vec3>& rows) {
+  if (rows.empty()) return py::none();
+  py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), py::ssize_t(3)});
+  std::copy_n(rows[0].data(), 3 * rows.size(), out.mutable_data());
+  return out;
+}
+
+// Positions, normals and colours, the latter two None where there are none.
+py::tuple read_points(const Path& path) {
+  const geo::PointCloud cloud = without_gil([&] { return geo::read_points(path.text); });
+  std::vector<geo::Vec3> colors;
+  for (const geo::Color& c : cloud.color) colors.push_back(c.head<3>());
+  return py::make_tuple(rows_of(cloud.position), rows_of(cloud.normal), rows_of(colors));
 }
 
 std::string kind_name(const Path& path) {
@@ -300,6 +314,7 @@ void bind_surface_files(py::module_& module) {
            "withstands.\n"
            "Raises OutputError, InputError.");
   module.def("_kind", &kind_name, py::arg("path"));
+  module.def("_read_points", &read_points, py::arg("path"));
   module.def("_load_surface", &any_surface, py::arg("path"), py::arg("unit") = "");
 }
 

@@ -235,8 +235,49 @@ class Files(unittest.TestCase):
             documents.append(json.loads(data[20:20 + int.from_bytes(data[12:16], "little")]))
         self.assertEqual(documents[1]["materials"][:2], documents[0]["materials"])
         self.assertEqual(len(documents[1]["images"]), 1)
-        with self.assertWarnsRegex(UserWarning, "left out: materials but their names"):
+        with self.assertWarnsRegex(UserWarning, "prop.obj: left out: doubleSided, second texture coordinates; a .ply"):
             s.save(self.path("prop.obj"))
+        again = kerf.load(self.path("prop.obj"))
+        again.save(self.path("again.glb"))
+        with open(self.path("again.glb"), "rb") as file:
+            data = file.read()
+        document = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])
+        self.assertEqual([m["name"] for m in document["materials"]], [m["name"] for m in documents[0]["materials"]])
+        self.assertEqual(len(document["images"]), 1)
+
+    def test_snapping_to_edges_is_an_option(self):
+        s = kerf.Solid(CUBE, CUBE_FACES)
+        low, high = s.bounds
+        x = (low[0] + high[0]) / 2 + 1e-5 * (high[0] - low[0])
+        lines = [[[x, y, z] for y in (low[1] - 1, high[1] + 1)] for z in (high[2] + 1, low[2] - 1)]
+        self.assertEqual(len(s.crack(np.array(lines), snap_edges=1e-3).pieces()), 2)
+        with self.assertRaisesRegex(kerf.InputError, "snap_edges"):
+            s.crack(np.array(lines), snap_edges=2)
+
+    def test_a_scan(self):
+        turns = np.arange(3000) * np.pi * (3 - 5 ** 0.5)
+        z = 1 - (2 * np.arange(3000) + 1) / 3000
+        ball = np.stack([np.cos(turns) * np.sqrt(1 - z * z), np.sin(turns) * np.sqrt(1 - z * z), z], axis=1)
+        colors = np.where(z[:, None] > 0, [255, 0, 0], [0, 0, 255]).astype(np.uint8)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            solid = kerf.reconstruct(ball, colors=colors)
+        self.assertIsInstance(solid, kerf.Solid)
+        self.assertAlmostEqual(solid.volume, 4 * np.pi / 3, delta=0.05)
+        top = solid.vertices[solid.faces].mean(axis=1)[:, 2] > 0.2
+        np.testing.assert_allclose(solid.colors[top][:, :, :3].mean(axis=(0, 1)), [1, 0, 0], atol=1e-6)
+        with self.assertWarnsRegex(UserWarning, "1 region without points filled, [0-9]+ % of the area"):
+            kerf.reconstruct(ball[z > -0.3], ball[z > -0.3])
+        np.savetxt(self.path("ball.xyz"), np.hstack([ball, ball]))
+        points, normals, none = kerf.read_points(self.path("ball.xyz"))
+        np.testing.assert_allclose(points, ball, atol=1e-15)
+        np.testing.assert_allclose(normals, ball, atol=1e-12)
+        self.assertIsNone(none)
+        for call, text in ((lambda: kerf.reconstruct(ball[:5]), "fewer than ten points"), (lambda: kerf.reconstruct(ball, ball[1:]), "normals: has 2999 rows"),
+                           (lambda: kerf.reconstruct(ball, depth=3), "depth must be from 4 to 12"), (lambda: kerf.reconstruct(ball, 0 * ball), "no length"),
+                           (lambda: kerf.read_points(self.path("none.xyz")), "cannot be opened")):
+            with self.assertRaisesRegex(kerf.InputError, text):
+                call()
 
     def test_what_is_left_out_is_a_warning(self):
         with open(self.path("lines.obj"), "w") as file:

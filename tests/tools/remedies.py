@@ -152,6 +152,14 @@ def inner_shells():
     run(f"{text[2]} cavity.obj {text[1]} -o solid.ply && kerf-crack solid.ply --jagged 0.05 -o x.ply")
 
 
+@case("has fewer than ten points without outliers; give --outliers 0")
+def scan_of_few_points():
+    places = [(1, 0.9, 0.8), (1, -1, 0.9), (-1, 1, 1), (-1, -1, 1.1), (1, 1, -1), (1, -0.8, -1), (-1, 1.2, -1), (-1, -1, -0.9), (1.4, 0, 0), (-1.6, 0, 0), (0, 1.5, 0), (0, -1.4, 0)]
+    pathlib.Path("few.xyz").write_text("".join(f"{x} {y} {z} {x} {y} {z}\n" for x, y, z in places))
+    option = said("kerf-repair few.xyz --outliers 0.001 -o x.ply", r"give (--outliers 0)\n")[1]
+    run(f"kerf-repair few.xyz {option} -o solid.ply && kerf-info --check solid.ply")
+
+
 @case("; wrap it in a new surface: --voxel 0.005")
 def wrap():
     pathlib.Path("sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")

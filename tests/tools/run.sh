@@ -175,6 +175,50 @@ contract)
   quietly kerf-info --check -q vdb.kerf
   kerf-sample block.ply -n 500 --levels 3 --pattern blue --json -o figures.pcd | grep -q '^{"nodes":500,.*"levels":\[{"spacing":.*"thinnest":null,"too_thin":null,"seconds":{"read":' || fail "kerf-sample --json"
   ;;
+scans)
+  # Points of a sphere, with colours and noise far away: a solid near them; half a sphere: the filled half is told.
+  python3 - <<'END'
+import math, random
+random.seed(7)
+rows = []
+for i in range(4000):
+    z = 1 - (2 * i + 1) / 4000
+    a, r = i * math.pi * (3 - 5 ** 0.5), (1 - z * z) ** 0.5
+    rows.append((r * math.cos(a), r * math.sin(a), z))
+with open("ball.xyz", "w") as f:
+    for x, y, z in rows:
+        f.write(f"{x} {y} {z} {255 if z > 0 else 0} 0 {0 if z > 0 else 255}\n")
+with open("noisy.xyz", "w") as f:
+    for x, y, z in rows + [(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(2, 4)) for _ in range(20)]:
+        f.write(f"{x} {y} {z}\n")
+with open("half.xyz", "w") as f:
+    for x, y, z in rows:
+        if z > -0.3:
+            f.write(f"{x} {y} {z} {x} {y} {z}\n")
+END
+  kerf-repair ball.xyz --json -o ball.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert abs(r["volume"] - 4.18879) < 0.05 and r["median"] < 0.01 and r["upper"] < 0.02 and r["unseen"] == 0, r' || fail "a ball"
+  kerf-info --check --json ball.ply | grep -q '"attributes":\["color"\]' || fail "colours of a scan"
+  quietly kerf-repair -q ball.xyz -j1 -o again.ply
+  quietly kerf-repair -q ball.xyz -o - >piped.ply
+  cmp ball.ply again.ply && cmp ball.ply piped.ply || fail "a scan twice"
+  kerf-repair noisy.xyz -o noisy.ply 2>said.txt || fail "kerf-repair of a scan: $(cat said.txt)"
+  grep -q 'points, [0-9]* outliers left out, normals estimated; surface of depth [0-9]*, from the points' said.txt || fail "kerf-repair says: $(cat said.txt)"
+  kerf-info --check --json noisy.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 1 and abs(r["volume"] - 4.18879) < 0.1, r' || fail "a ball with outliers"
+  kerf-repair half.xyz -o half.ply 2>said.txt || fail "kerf-repair of half a scan: $(cat said.txt)"
+  grep -q '1 region without points filled, [0-9.]* % of the area: look there first' said.txt || fail "kerf-repair says: $(cat said.txt)"
+  kerf-info --check -q half.ply || fail "half a scan"
+  expect 2 "--depth must be from 4 to 12" kerf-repair ball.xyz --depth 3 -o x.ply
+  head -n 5 ball.xyz >few.xyz
+  expect 65 "few.xyz: has fewer than ten points" kerf-repair few.xyz -o x.ply
+  { head -n 5 ball.xyz; echo "1 2"; } >short.xyz
+  expect 65 "short.xyz:6: a point has 2 numbers, not 6" kerf-repair short.xyz -o x.ply
+  # Nine points at one place and three others: without outliers too few are left.
+  { for i in 1 2 3 4 5 6 7 8 9 10 11; do echo "0 0 0"; done; echo "1 0 0"; } >twins.xyz
+  expect 65 "twins.xyz: has most of its points several times" kerf-repair twins.xyz --outliers 0 -o x.ply
+  [ ! -e x.ply ] || fail "a partial file"
+  # PCL is loaded for scans alone.
+  ldd "$(command -v kerf-repair)" | grep -q pcl && fail "kerf-repair loads PCL"
+  ;;
 repairs)
   # Overlapping boxes, one of them open, with a group each: closed as they are, one solid when wrapped.
   box='1 3 4 2\n5 6 8 7\n1 2 6 5\n2 4 8 6\n4 3 7 8\n3 1 5 7'
@@ -201,6 +245,15 @@ repairs)
   sed '$d' box.obj | kerf-repair -q - | kerf-info --check --json - | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["volume"] == 1 and r["faces"] == 12, r' || fail "an open box in a pipe"
   kerf-repair --json box.obj -o box.ply | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["holes"] == 0 and r["volume"] == 1' || fail "kerf-repair --json"
   quietly kerf-repair -q two.obj --voxel 0.01 -j1 -o one.ply
+  for ending in stl off; do
+    kerf-repair two.obj -o united.$ending 2>said.txt || fail "kerf-repair to .$ending: $(cat said.txt)"
+    grep -q "united.$ending: left out: all but vertices and faces; a .ply keeps them" said.txt || fail "kerf-repair to .$ending says: $(cat said.txt)"
+    kerf-info --check --json united.$ending | python3 -c 'import json, sys; r = json.load(sys.stdin); assert r["pieces"] == 1 and r["volume"] == 1.875, r' || fail "united.$ending"
+  done
+  kerf-repair -q box.obj -o - | kerf-repair -q - -o piped.off || fail "a pipe to .off"
+  awk '/^v / { $2 += 1e6 } { print }' box.obj >far.obj
+  expect 65 "far.stl: the model is too far from the origin for single precision; write a .ply" kerf-repair far.obj -o far.stl
+  [ ! -e far.stl ] || fail "a partial file"
   # A scan with a hole, closed as the surface around it goes on.
   kerf-model sphere --frequency 8 -o ball.ply && kerf-repair -q ball.ply -o ball.obj || fail "a ball"
   awk '/^v / { z[++n] = $4 } /^f / { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); if (z[a[1]] > 0.7 && z[b[1]] > 0.7 && z[c[1]] > 0.7) next } { print }' ball.obj >scan.obj
@@ -417,6 +470,7 @@ kinds)
   ;;
 attributes)
   # A die with texture coordinates and materials keeps them through every cut, in every format.
+  printf 'newmtl side\nKd 1 0 0\nnewmtl lid\nKd 0 1 0\nPr 0.25\n' >die.mtl
   quads() { for q in "$@"; do set -- $q; echo "f $1/1 $2/2 $3/3 $4/4"; done; }
   {
     printf 'mtllib die.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl side\n'
@@ -429,7 +483,7 @@ attributes)
   quietly kerf-crack die.obj --front a.front -o cut.obj
   printf '[body]\nmesh = "die.obj"\nspacing = 0.3\n[[score]]\nfile = "a.front"\n[time]\nframes = 1\n' >die.toml
   kerf-sim -q die.toml -o die && /usr/bin/python3 "$(dirname "$script")/check_usd.py" die | grep -q "texture" || fail "USD with texture coordinates"
-  for line in "mtllib die.mtl" "usemtl side" "usemtl lid" "usemtl crack" "g patch_-1" "f [0-9]*/[0-9]* [0-9]*/[0-9]* [0-9]*/[0-9]*"; do grep -q "^$line\$" cut.obj || fail "cut.obj has no '$line'"; done
+  for line in "mtllib cut.mtl" "usemtl side" "usemtl lid" "usemtl crack" "g patch_-1" "f [0-9]*/[0-9]* [0-9]*/[0-9]* [0-9]*/[0-9]*"; do grep -q "^$line\$" cut.obj || fail "cut.obj has no '$line'"; done
   [ "$(grep -c '^vt ' cut.obj)" -gt 4 ] || fail "cut.obj has no new texture coordinates"
   quietly kerf-crack die.obj --front a.front --steps 0:1 -o half.ply
   quietly kerf-crack half.ply --front b.front -o cut.ply
@@ -438,6 +492,17 @@ attributes)
   kerf-info --json a.front | grep -q attributes && fail "a front has no attributes"
   quietly kerf-crack half.ply --front a.front --steps 1:2 -o whole.ply
   quietly kerf-pieces --obj whole.ply -o pieces
+  # Materials of an .mtl go beside an OBJ, into a folder, and to standard output as names.
+  quietly kerf-crack die.obj --front a.front -o red.ply
+  quietly kerf-crack die.obj --front a.front -o red.obj
+  grep -q '^mtllib red.mtl$' red.obj && grep -q '^newmtl crack$' red.mtl && grep -q '^Pr 0.25$' red.mtl || fail "red.obj without its materials: $(cat red.mtl)"
+  quietly kerf-pieces red.ply -o red
+  grep -q '^Kd 0 1 0$' red/materials.mtl || fail "a folder without materials"
+  quietly kerf-pieces red/piece_000.ply -o red.glb
+  grep -q 'baseColorFactor":\[0.0,1.0,0.0,1.0\]' red.glb || fail "a piece of a folder has no materials"
+  mv die.mtl away.mtl
+  kerf-crack die.obj --front a.front -o x.ply 2>&1 | grep -q 'die.obj: names die.mtl, not in its folder; materials of it have names only' || fail "a missing .mtl is not told"
+  mv away.mtl die.mtl
   for piece in pieces/*.obj; do for line in "usemtl side" "usemtl lid" "usemtl crack"; do grep -q "^$line\$" $piece || fail "$piece has no '$line'"; done; done
   sed 's/^f 1\/1/f 1\/9/' die.obj >range.obj
   expect 65 "range.obj:.*texture coordinate 9" kerf-crack range.obj --front a.front -o x.ply

@@ -120,6 +120,7 @@ std::string hull_suffix(std::size_t part, std::size_t parts);
 struct UsdOptions {
   bool z_up = false;           ///< the model's z axis is vertical, else y is
   std::size_t hull_parts = 1;  ///< 1: readers take the convex hull of a piece as its shape; more: they decompose it
+  std::string image_prefix;    ///< of the files beside that hold textures, see image_files(); empty: no textures
 };
 
 /// Writes pieces as USD text with the schema UsdPhysics: a mesh for each piece, which is a rigid
@@ -127,7 +128,9 @@ struct UsdOptions {
 /// breaks at its strength (breakForce) and torque (breakTorque). Coordinates are the model's, and
 /// `metersPerUnit` is its unit. The root's translation is single_precision_offset(). Meshes have
 /// normals as in write_glb(), texture coordinates, patches, and a subset and a material for each
-/// group. Throws InputError for a chunk without triangles.
+/// group: a UsdPreviewSurface with the values and textures of the mesh's library. Textures read
+/// `primvars:st`, and `st1` for the second set of texture coordinates. Throws InputError for a
+/// chunk without triangles.
 void write_usd_pieces(std::ostream& out, const std::vector<Chunk>& chunks, const std::vector<Bond>& bonds,
                       const ChunkLabels& labels, const UsdOptions& options = {});
 

@@ -134,8 +134,47 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name);
 void write_ply(std::ostream& out, const TriangleMesh& mesh, const std::vector<FrontState>& fronts = {},
                const std::string& comment = {});
 /// Writes Wavefront OBJ: patches as `g patch_N`, groups as `usemtl`. OBJ has one colour a vertex,
-/// without alpha: the colour of the skin is written.
+/// without alpha: the colour of the skin is written. See save_obj() for materials.
 void write_obj(std::ostream& out, const TriangleMesh& mesh);
+/// Writes binary STL: normals and corners of triangles in single precision.
+void write_stl(std::ostream& out, const TriangleMesh& mesh);
+/// Writes OFF as text; every coordinate returns to the bit.
+void write_off(std::ostream& out, const TriangleMesh& mesh);
+
+// ---- Materials beside a surface's file.
+
+/// A file that belongs into the folder of another.
+struct BesideFile {
+  std::string name;  ///< without a folder
+  std::string bytes;
+};
+/// Writes such a file, as write_all(). An empty folder is the current one. Throws OutputError.
+void write_beside(const std::string& folder, const BesideFile& file);
+
+/// Images of a library, and what a preview surface of USD does not hold of its materials.
+struct ImageFiles {
+  std::vector<BesideFile> images;
+  std::vector<std::string> left_out;  ///< as words of a line
+};
+/// The images of a library, PNG and JPEG. A file's name is `prefix`, the image's name, its ending.
+/// write_usd_pieces() names these files. Throws InputError where the library is damaged.
+ImageFiles image_files(const MaterialLibrary& library, const std::string& prefix);
+
+/// Materials of groups as an .mtl file says them.
+struct MtlFiles {
+  std::string mtl;                    ///< the text
+  std::vector<BesideFile> images;     ///< that the text names
+  std::vector<std::string> left_out;  ///< what the format does not hold, as words of a line
+};
+/// The materials of these groups: those of the library, else grey ones. Images are named as by
+/// image_files(). Throws InputError where the library is damaged.
+MtlFiles mtl_files(const std::vector<std::string>& groups, const MaterialLibrary& library, const std::string& prefix);
+
+/// Writes an OBJ file, and the materials of a library beside it: `model.obj` gets `model.mtl` and
+/// images `model_NAME.png`. "-" is standard output, without materials.
+///
+/// Returns what the format does not hold of the mesh, as words of a line. Throws OutputError.
+std::vector<std::string> save_obj(const std::string& path, TriangleMesh mesh);
 
 // ---- Volumes.
 
@@ -154,6 +193,27 @@ TriangleMesh read_volume(const std::string& path, const VolumeOptions& options =
 /// Writes a mesh as a level set with voxels of edge `voxel`; with `fog` as a density from 0 outside
 /// to 1 inside. For samples and tests. Throws OutputError.
 void write_level_set(const std::string& path, const TriangleMesh& solid, double voxel, bool fog = false);
+
+// ---- Scans: points of a surface.
+
+/// Points of a scan. Normals and colours are as long as the positions, or empty.
+struct PointCloud {
+  std::vector<Vec3> position;
+  std::vector<Vec3> normal;  ///< of length 1, out of the material
+  std::vector<Color> color;
+  std::size_t left_out = 0;  ///< points of the file without a finite place or a normal
+};
+
+/// Whether a file holds points of a scan: PCD, PLY without faces, or text (.xyz, .pwn, .pts, .asc,
+/// .csv) by the ending of its name.
+bool holds_points(const std::string& bytes, const std::string& name);
+/// Reads a scan. PCD may be ASCII, binary or compressed. In text, three numbers of a line are a
+/// place; three more are colours if all are integers up to 255, else a normal.
+///
+/// Throws InputError for malformed and truncated files, and for files of nodes.
+PointCloud parse_points(const std::string& bytes, const std::string& name);
+/// The same from a file ("-": standard input).
+PointCloud read_points(const std::string& path);
 
 // ---- Nodes: PCD, which pcl_viewer opens, and PLY.
 

@@ -19,7 +19,7 @@ using Color = Eigen::Vector4d;  ///< red, green, blue, alpha; 0 … 1
 
 /// Materials with their images, as a .glb (glTF 2.0) without nodes and meshes: a material for each
 /// of some groups, with the group's name. It goes unchanged from a .glb that is read to one that is
-/// written. Copies share the bytes.
+/// written; the reader of .mtl files makes one, too. Copies share the bytes.
 struct MaterialLibrary {
   std::shared_ptr<const std::string> glb;  ///< null: none
   /// Whether both have equal bytes, or none.
@@ -38,7 +38,7 @@ struct Attributes {
   std::vector<std::int32_t> group;       ///< per triangle: index into group_names
   std::vector<std::string> group_names;  ///< one line of text each
   std::string materials;                 ///< the file that describes materials of these names (OBJ's mtllib), or empty
-  MaterialLibrary library = {};          ///< materials of these names, where a .glb brought them
+  MaterialLibrary library = {};          ///< materials of these names, where a .glb or .mtl brought them
 
   /// True when no array has values.
   bool empty() const { return uv.empty() && uv2.empty() && normal.empty() && color.empty() && group.empty(); }

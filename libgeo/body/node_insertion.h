@@ -59,8 +59,8 @@ std::size_t insert_nodes_near(NewNodes& inserted, const std::vector<FaceId>& fac
 
 /// Inserts nodes where the material behind the faces is thinner than half of the spacing, so that
 /// insert_nodes_near() finds no place: between the two walls, nearer to the one or the other in
-/// turn. Returns each with the nearest older node that it sees, its donor. Precondition: each piece has
-/// a node.
+/// turn. Returns each with the nearest older node that it sees, its donor. Precondition: each piece
+/// has a node.
 std::vector<NodePair> insert_nodes_between_walls(NewNodes& inserted, const std::vector<FaceId>& faces,
                                                  std::uint64_t seed);
 

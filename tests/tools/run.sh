@@ -314,9 +314,10 @@ assert after["materials"][:2] == before["materials"] and len(after["images"]) ==
 assert image(before, first) == image(after, last)
 assert sum(node["name"].startswith("piece_") for node in after["nodes"] if "mesh" in node) == 2
 END
-  said "cut.obj: left out: materials but their names, second texture coordinates" kerf-crack "$cases/gltf/prop.glb" --front a.front -o cut.obj
-  said "folder: left out: materials but their names" kerf-pieces broken.ply -o folder
-  said "pieces.usda: left out: materials but their names" kerf-pieces broken.ply -o pieces.usda
+  said "cut.obj: left out: doubleSided, second texture coordinates" kerf-crack "$cases/gltf/prop.glb" --front a.front -o cut.obj
+  said "folder: left out: doubleSided" kerf-pieces broken.ply -o folder
+  ! kerf-pieces broken.ply -o pieces.usda 2>&1 | grep -q 'left out' || fail "pieces.usda leaves something out"
+  grep -q 'UsdPreviewSurface' pieces.usda || fail "pieces.usda has no materials"
   printf '[body]\nmesh = "%s"\nspacing = 0.3\n[time]\nframes = 1\n' "$(realpath "$cases/gltf/prop.glb")" >prop.toml
   kerf-sim prop.toml -o prop 2>&1 | grep -q 'prop.glb: left out: materials but their names' || fail "kerf-sim says nothing of materials"
   # Units: a part of 40 mm weighs what it weighs.

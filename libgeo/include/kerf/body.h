@@ -92,7 +92,7 @@ struct SplitStats {
   std::size_t nodes_added = 0;    ///< |P_new|
   std::size_t nodes_moved = 0;    ///< old nodes moved off a crack face
   std::size_t orphans = 0;        ///< surface vertices that got another carrying node
-  std::size_t repair_nodes = 0;   ///< of the added nodes, the last: in pieces without a node and in narrow passages
+  std::size_t repair_nodes = 0;   ///< of the added nodes, the last: in pieces without one, narrow passages, thin walls
   double resample_seconds = 0;    ///< new nodes
   double graph_seconds = 0;       ///< graph and neighbours, and most of the binding beside them
   double binding_seconds = 0;     ///< the rest of the binding

@@ -150,10 +150,6 @@ double way_to_next_face(const Complex& k, FaceId own, const Vec3& from, const Ve
   return least;
 }
 
-}  // namespace
-
-namespace {
-
 // Whether a place has a node that it sees nearer than 0.6 spacings: below the 0.8 spacings between
 // samples (resample.h). Larger: fewer new nodes beside old ones.
 bool has_node_near(const Body& body, const Vec3& x, double spacing) {

@@ -9,19 +9,6 @@
 namespace geo::usd {
 namespace {
 
-std::string usd_text_of(double x) {
-  std::string text;
-  add_number(text, float(x));
-  return text;
-}
-
-template <class Row>
-std::string usd_text_of_row(const Row& row) {
-  std::string text;
-  add_tuple(text, row);
-  return text;
-}
-
 const char* wrap_name(int wrap) { return wrap == 33071 ? "clamp" : wrap == 33648 ? "mirror" : "repeat"; }
 
 // Writes one material.
@@ -72,20 +59,20 @@ class MaterialWriter {
     open("Shader", "preview");
     line_("uniform token info:id = \"UsdPreviewSurface\"");
     const bool opaque = m_.alpha == PreviewMaterial::Alpha::opaque;
-    input("color3f inputs:diffuseColor", m_.base_texture, "base", "rgb", usd_text_of_row(Vec3(m_.base.head<3>())));
-    if (!opaque) input("float inputs:opacity", m_.base_texture, "base", "a", usd_text_of(m_.base[3]));
-    if (m_.alpha == PreviewMaterial::Alpha::mask) line_("float inputs:opacityThreshold = " + usd_text_of(m_.cutoff));
-    input("float inputs:roughness", m_.surface_texture, "surface", "g", usd_text_of(m_.roughness));
-    input("float inputs:metallic", m_.surface_texture, "surface", "b", usd_text_of(m_.metallic));
+    input("color3f inputs:diffuseColor", m_.base_texture, "base", "rgb", usd_tuple(Vec3(m_.base.head<3>())));
+    if (!opaque) input("float inputs:opacity", m_.base_texture, "base", "a", usd_number(m_.base[3]));
+    if (m_.alpha == PreviewMaterial::Alpha::mask) line_("float inputs:opacityThreshold = " + usd_number(m_.cutoff));
+    input("float inputs:roughness", m_.surface_texture, "surface", "g", usd_number(m_.roughness));
+    input("float inputs:metallic", m_.surface_texture, "surface", "b", usd_number(m_.metallic));
     if (!m_.emissive.isZero(0))
-      input("color3f inputs:emissiveColor", m_.emissive_texture, "emissive", "rgb", usd_text_of_row(m_.emissive));
+      input("color3f inputs:emissiveColor", m_.emissive_texture, "emissive", "rgb", usd_tuple(m_.emissive));
     if (has(m_.normal_texture)) line_("normal3f inputs:normal.connect = " + output("normal", "rgb"));
     if (has(m_.occlusion_texture)) line_("float inputs:occlusion.connect = " + output("occlusion", "r"));
     if (m_.clearcoat > 0) {
-      line_("float inputs:clearcoat = " + usd_text_of(m_.clearcoat));
-      line_("float inputs:clearcoatRoughness = " + usd_text_of(m_.clearcoat_roughness));
+      line_("float inputs:clearcoat = " + usd_number(m_.clearcoat));
+      line_("float inputs:clearcoatRoughness = " + usd_number(m_.clearcoat_roughness));
     }
-    if (m_.ior != 1.5) line_("float inputs:ior = " + usd_text_of(m_.ior));
+    if (m_.ior != 1.5) line_("float inputs:ior = " + usd_number(m_.ior));
     line_("token outputs:surface");
     close();
     list_textures();
@@ -120,9 +107,9 @@ class MaterialWriter {
       open("Shader", transform);
       line_("uniform token info:id = \"UsdTransform2d\"");
       line_("float2 inputs:in.connect = " + output(reader, "result"));
-      line_("float inputs:rotation = " + usd_text_of(use.turn * 180 / std::numbers::pi));
-      line_("float2 inputs:scale = " + usd_text_of_row(use.scale));
-      line_("float2 inputs:translation = " + usd_text_of_row(use.offset));
+      line_("float inputs:rotation = " + usd_number(use.turn * 180 / std::numbers::pi));
+      line_("float2 inputs:scale = " + usd_tuple(use.scale));
+      line_("float2 inputs:translation = " + usd_tuple(use.offset));
       line_("float2 outputs:result");
       close();
     }
@@ -133,8 +120,8 @@ class MaterialWriter {
     line_("token inputs:sourceColorSpace = \"" + std::string(node.color ? "sRGB" : "raw") + "\"");
     line_("token inputs:wrapS = \"" + std::string(wrap_name(use.wrap[0])) + "\"");
     line_("token inputs:wrapT = \"" + std::string(wrap_name(use.wrap[1])) + "\"");
-    if (node.scale != Color::Ones()) line_("float4 inputs:scale = " + usd_text_of_row(node.scale));
-    if (!node.bias.isZero(0)) line_("float4 inputs:bias = " + usd_text_of_row(node.bias));
+    if (node.scale != Color::Ones()) line_("float4 inputs:scale = " + usd_tuple(node.scale));
+    if (!node.bias.isZero(0)) line_("float4 inputs:bias = " + usd_tuple(node.bias));
     for (const char* channel : {"r", "g", "b", "a"}) line_("float outputs:" + std::string(channel));
     line_("float3 outputs:rgb");
     close();

@@ -29,19 +29,6 @@ std::string identifier(const std::string& name) {
   return id.empty() ? "_" : id;
 }
 
-std::string usd_number(double x) {
-  std::string text;
-  add_number(text, float(x));
-  return text;
-}
-
-template <class Row>
-std::string usd_tuple(const Row& row) {
-  std::string text;
-  add_tuple(text, row);
-  return text;
-}
-
 // The text of a stage: prims with braces, each line indented by its depth.
 class UsdStage {
  public:

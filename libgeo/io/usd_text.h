@@ -48,6 +48,21 @@ void add_tuple(std::string& text, const Row& row) {
   text.append(chars, at);
 }
 
+/// A number in single precision.
+inline std::string usd_number(double x) {
+  std::string text;
+  add_number(text, float(x));
+  return text;
+}
+
+/// A vector in single precision.
+template <class Row>
+std::string usd_tuple(const Row& row) {
+  std::string text;
+  add_tuple(text, row);
+  return text;
+}
+
 /// The vertices of a mesh, less `offset`.
 inline std::string points_of(const TriangleMesh& m, const Vec3& offset = Vec3::Zero()) {
   constexpr std::size_t usual = 40;  // characters

@@ -1,20 +1,8 @@
 // usd.mjs PIECES.usda PIECES.glb: tinyusdz reads the stage, and it says what the .glb does: pieces, masses, joints.
 import fs from 'node:fs';
-import path from 'node:path';
-import {fileURLToPath} from 'node:url';
 
 import {add, norm, readAsset, readGlb, sub} from './asset.mjs';
-
-// The package is built for browsers and workers.
-Object.defineProperty(process, 'type', {value: 'renderer'});
-globalThis.window = globalThis;
-const {default: initialize} = await import('tinyusdz/tinyusdz.js');
-const here = path.dirname(fileURLToPath(import.meta.url));
-const wasm = fs.readFileSync(path.join(here, 'node_modules/tinyusdz/tinyusdz.wasm'));
-const tiny = await initialize({instantiateWasm(imports, done) {
-  WebAssembly.instantiate(wasm, imports).then(result => done(result.instance, result.module));
-  return {};
-}});
+import {tiny} from './tiny.mjs';
 
 const [file, glbFile] = process.argv.slice(2), text = fs.readFileSync(file);
 function check(condition, what) {

@@ -115,7 +115,6 @@ std::vector<std::uint32_t> SurfaceWeights::update(const Body& body, const Solid&
 
 bool SurfaceWeights::set_rotations(const Solid& solid, const std::vector<Vec3>& u) {
   const NodalGradientOperator& mls = SolidDiscretisation::of(solid).mls;
-  std::vector<Mat3> rotation(mls.size(), Mat3::Identity());  // of nodes that need it
   std::vector<std::uint32_t> rotating;
   std::vector<char> is_rotating(mls.size(), 0);
   for (const auto& arms : arms_)
@@ -124,6 +123,7 @@ bool SurfaceWeights::set_rotations(const Solid& solid, const std::vector<Vec3>& 
         is_rotating[a.node] = 1;
         rotating.push_back(a.node);
       }
+  std::vector<Mat3> rotation(rotating.empty() ? 0 : mls.size());  // of these nodes
   parallel_for(rotating.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) rotation[rotating[k]] = mls.rotation(rotating[k], u);
   });
@@ -132,8 +132,9 @@ bool SurfaceWeights::set_rotations(const Solid& solid, const std::vector<Vec3>& 
     rotated.resize(arms_.size(), Vec3::Zero());
     for (std::size_t v = 0; v < arms_.size(); ++v)
       for (const Arm& a : arms_[v]) {
-        const Mat3 rest = (1 - a.share) * (rotation[a.node] - Mat3::Identity());
-        rotated[v] += (a.share * mls.undetermined(a.node) + rest) * a.arm;
+        Mat3 motion = a.share * mls.undetermined(a.node);
+        if (a.share < 1) motion += (1 - a.share) * (rotation[a.node] - Mat3::Identity());
+        rotated[v] += motion * a.arm;
       }
   }
   if (rotated == rotated_) return false;

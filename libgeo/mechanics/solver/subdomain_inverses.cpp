@@ -19,19 +19,21 @@ void SubdomainInverses::begin(const Subdomains& subdomains) {
     first_.push_back(first_.back() + 3 * nodes * padded(3 * nodes));
   }
   matrix_ = UninitializedArray<std::uint16_t>(first_.back());
+  floats_.assign(subdomains.count(), {});
   terms_.resize(node_.back());
   moduli_.resize(subdomains.count());
   valid_.assign(subdomains.count(), 0);
 }
 
 void SubdomainInverses::update(const Subdomains& subdomains, std::span<const std::uint32_t> former) {
-  const SubdomainInverses before = std::exchange(*this, {});
+  SubdomainInverses before = std::exchange(*this, {});
   begin(subdomains);
   parallel_for(former.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
       const std::size_t o = former[p];
       if (o >= before.count() || !before.valid_[o]) continue;
       std::copy_n(before.matrix(o), before.first_[o + 1] - before.first_[o], matrix(p));
+      floats_[p] = before.floats_[o];
       std::copy(&before.terms_[before.node_[o]], &before.terms_[0] + before.node_[o + 1], &terms_[node_[p]]);
       moduli_[p] = before.moduli_[o];
       valid_[p] = 1;

@@ -42,10 +42,16 @@ class SubdomainInverses {
   std::uint16_t* matrix(std::size_t p) { return &matrix_[first_[p]]; }
   /// The same, to read.
   const std::uint16_t* matrix(std::size_t p) const { return &matrix_[first_[p]]; }
+  /// The floats of an inverse in the same places, where their upper halves would not be positive
+  /// definite; empty elsewhere.
+  std::vector<float>& floats(std::size_t p) { return floats_[p]; }
+  /// The same, to read.
+  const std::vector<float>& floats(std::size_t p) const { return floats_[p]; }
 
  private:
   std::vector<std::size_t> node_, first_;  // per subdomain and one more: offsets into terms_ and matrix_
   UninitializedArray<std::uint16_t> matrix_;
+  std::vector<std::vector<float>> floats_;  // per subdomain
   std::vector<DiagonalTerm> terms_;  // per node of a subdomain
   std::vector<Moduli> moduli_;       // per subdomain
   std::vector<char> valid_;          // per subdomain

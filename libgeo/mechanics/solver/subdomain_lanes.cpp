@@ -166,17 +166,16 @@ HWY_INLINE Tile inverse(Tile t, const Vector (&least)[3]) {
 // The sweep operator, node by node: swept rows and columns hold −K⁻¹ of the swept nodes, all others
 // their Schur complement. The matrix stays symmetric, so half of the tiles suffice.
 HWY_INLINE void sweep(EightSubdomains& p, std::size_t lane) {
-  constexpr float rounding = 1e-5f;  // of a diagonal entry: a smaller pivot is rounding error of single precision
   const Lanes<float> d;
+  const auto rounding = hn::Set(d, 1e-5f);  // of a diagonal entry: a smaller pivot is error of single precision
   float *const tiles = p.tiles.data() + lane, *const column = p.scratch.data() + lane,
-               *const least = column + 72 * p.nodes;
+               *const diagonal = p.diagonal.data() + lane;
   for (std::size_t a = 0; a < p.nodes; ++a)
     for (std::size_t c = 0; c < 3; ++c)
-      hn::StoreU(hn::Mul(hn::Set(d, rounding), hn::LoadU(d, tiles + tile_at(a, a) + 32 * c)), d,
-                 least + 8 * (3 * a + c));
+      hn::StoreU(hn::LoadU(d, tiles + tile_at(a, a) + 32 * c), d, diagonal + 8 * (3 * a + c));
   for (std::size_t k = 0; k < p.nodes; ++k) {
-    const Vector pivot_bound[3] = {hn::LoadU(d, least + 24 * k), hn::LoadU(d, least + 24 * k + 8),
-                                   hn::LoadU(d, least + 24 * k + 16)};
+    Vector pivot_bound[3];
+    for (std::size_t c = 0; c < 3; ++c) pivot_bound[c] = hn::Mul(rounding, hn::LoadU(d, diagonal + 24 * k + 8 * c));
     Tile own = inverse(load_tile(tiles + tile_at(k, k)), pivot_bound);
     for (std::size_t a = 0; a < p.nodes; ++a) {
       if (a == k) continue;
@@ -218,30 +217,43 @@ void InvertPositive(EightSubdomains& p) {
   }
 }
 
-void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {
+// Numbers of a matrix from `at` on, as floats.
+HWY_INLINE hn::Vec<Wide> load_numbers(const std::uint16_t* at) {
   const Wide d;
   const hn::Rebind<std::uint16_t, Wide> d16;
   const hn::RebindToUnsigned<Wide> d32;
+  return hn::BitCast(d, hn::ShiftLeft<16>(hn::PromoteTo(d32, hn::LoadU(d16, at))));
+}
+HWY_INLINE hn::Vec<Wide> load_numbers(const float* at) { return hn::LoadU(Wide(), at); }
+
+// The matrix is symmetric, so its rows are read as columns: no sum across a vector.
+template <class Number>
+HWY_INLINE void multiply(std::size_t size, const Number* matrix, const float* x, float* out) {
+  const Wide d;
   const std::size_t row = padded(size);
-  const auto column = [&](std::size_t at) HWY_ATTR {
-    return hn::BitCast(d, hn::ShiftLeft<16>(hn::PromoteTo(d32, hn::LoadU(d16, matrix + at))));
-  };
   std::size_t at = 0;
   for (; at + 2 * wide <= row; at += 2 * wide) {
     auto sum = hn::Zero(d), next = hn::Zero(d);
     for (std::size_t j = 0; j < size; ++j) {
       const auto by = hn::Set(d, x[j]);
-      sum = hn::MulAdd(by, column(j * row + at), sum);
-      next = hn::MulAdd(by, column(j * row + at + wide), next);
+      sum = hn::MulAdd(by, load_numbers(matrix + j * row + at), sum);
+      next = hn::MulAdd(by, load_numbers(matrix + j * row + at + wide), next);
     }
     hn::StoreU(sum, d, out + at);
     hn::StoreU(next, d, out + at + wide);
   }
   for (; at < row; at += wide) {
     auto sum = hn::Zero(d);
-    for (std::size_t j = 0; j < size; ++j) sum = hn::MulAdd(hn::Set(d, x[j]), column(j * row + at), sum);
+    for (std::size_t j = 0; j < size; ++j) sum = hn::MulAdd(hn::Set(d, x[j]), load_numbers(matrix + j * row + at), sum);
     hn::StoreU(sum, d, out + at);
   }
+}
+
+void MultiplyHalves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {
+  multiply(size, matrix, x, out);
+}
+void MultiplyFloats(std::size_t size, const float* matrix, const float* x, float* out) {
+  multiply(size, matrix, x, out);
 }
 
 }  // namespace geo::HWY_NAMESPACE
@@ -252,6 +264,7 @@ namespace geo {
 HWY_EXPORT(OuterProducts);
 HWY_EXPORT(InvertPositive);
 HWY_EXPORT(MultiplyHalves);
+HWY_EXPORT(MultiplyFloats);
 
 void add_outer_products(const PointBlock& block, std::span<const std::uint32_t> first,
                         std::span<const Subdomains::Incidence> places, BlockOuterProducts& out) {
@@ -266,11 +279,15 @@ void EightSubdomains::begin(std::size_t count) {
   shear.fill(0);
   bulk.fill(0);
   halves.resize(tiles.size());
-  scratch.resize(96 * count);
+  diagonal.resize(24 * count);
+  scratch.resize(72 * count);
 }
 void invert_positive(EightSubdomains& subdomains) { HWY_DYNAMIC_DISPATCH(InvertPositive)(subdomains); }
 void multiply_halves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out) {
   HWY_DYNAMIC_DISPATCH(MultiplyHalves)(size, matrix, x, out);
+}
+void multiply_floats(std::size_t size, const float* matrix, const float* x, float* out) {
+  HWY_DYNAMIC_DISPATCH(MultiplyFloats)(size, matrix, x, out);
 }
 
 }  // namespace geo

@@ -44,16 +44,19 @@ struct EightSubdomains {
   std::array<float, 8> shear{};  ///< shear modulus, Pa
   std::array<float, 8> bulk{};   ///< λ, Pa
   std::vector<std::uint16_t> halves;  ///< the result: upper halves of the inverse's floats, in the order of `tiles`
+  std::vector<float> diagonal;        ///< three per node: of K
   std::vector<float> scratch;         ///< of invert_positive()
 
   /// Sets the number of nodes and clears all numbers.
   void begin(std::size_t count);
 };
-/// Computes `halves` from the other members. A row whose pivot is not positive beyond rounding is
+/// Computes `halves` and `diagonal` from the other members. A row whose pivot is not positive beyond rounding is
 /// left out.
 void invert_positive(EightSubdomains& subdomains);
 /// out = matrix · x for a symmetric matrix of upper halves of floats. Matrix rows, x and out have
 /// padded(size) numbers.
 void multiply_halves(std::size_t size, const std::uint16_t* matrix, const float* x, float* out);
+/// The same for a matrix of floats.
+void multiply_floats(std::size_t size, const float* matrix, const float* x, float* out);
 
 }  // namespace geo

@@ -105,7 +105,7 @@ BladeCuts::PlannedCut BladeCuts::plan_cut(const MovedBody& moved, std::size_t b,
 BladeCuts::Advance BladeCuts::plan_advance(const EdgeFront& front, std::span<const EdgePoint> run, const MapAt& half,
                                            const Blade& blade, const FrontAnchor& anchor) const {
   Advance a;
-  const MappedPlaces places(body_.surface);
+  const MappedPlaces places(body_);
   std::vector<Vec3> mapped;
   a.edge = refined(front, run, mapped);
   for (const double at : a.edge.at) {
@@ -115,8 +115,9 @@ BladeCuts::Advance BladeCuts::plan_advance(const EdgeFront& front, std::span<con
   }
   a.retreating = hold_retreating(body_.surface, a.edge.front, a.spacing, a.to);
   cross_first(body_.surface, a.edge.front, a.spacing, a.to);
+  const std::vector<Vec3> resolved = places.resolved(a.to);
   for (std::size_t i = 0; i < a.to.size(); ++i)
-    if (a.to[i] != a.edge.front.points[i].position) a.to[i] = places.resolved(a.to[i]);
+    if (a.to[i] != a.edge.front.points[i].position) a.to[i] = resolved[i];
   a.rests = rests(a.edge.front, mapped, a.spacing, a.to);
   if (!a.rests) a.deviation = sheet_deviation(body_, half, blade, a.edge, a.to, anchor);
   return a;

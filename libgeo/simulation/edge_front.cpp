@@ -48,6 +48,12 @@ Vec3 place_on(const Blade& blade, double at) {
   return t > 0 ? Vec3(blade.points[i] + t * (blade.points[(i + 1) % n] - blade.points[i])) : blade.points[i];
 }
 
+Vec3 direction_on(const Blade& blade, double at) {
+  const std::size_t n = blade.points.size(), last = blade.closed ? n - 1 : n - 2;
+  const std::size_t i = std::min(static_cast<std::size_t>(at), last);
+  return blade.points[(i + 1) % n] - blade.points[i];
+}
+
 std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at) {
   for (const EdgeFront& edge : fronts) {
     if (edge.at.empty() || at < edge.at.front() || at > edge.at.back()) continue;

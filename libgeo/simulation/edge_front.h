@@ -37,6 +37,8 @@ const EdgePoint& nearest(std::span<const EdgePoint> points, double at);
 
 /// The place of an edge parameter on a blade, in the blade's coordinates.
 Vec3 place_on(const Blade& blade, double at);
+/// The direction of the blade's edge there, in its own coordinates, of any length.
+Vec3 direction_on(const Blade& blade, double at);
 /// The place of an edge parameter on the front that has it, between the front's points; nothing
 /// where none of the fronts does.
 std::optional<Vec3> place_on(std::span<const EdgeFront> fronts, double at);

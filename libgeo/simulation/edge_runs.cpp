@@ -28,6 +28,7 @@ constexpr double longest_beside_cut = 0.5;
 struct Sample {
   double at = 0;  // edge parameter
   Vec3 world, material;
+  MappedPlace place;       // that `material` is outside of
   bool within = false;     // the support of a node
   bool is_in_cut = false;  // one that exists, and no front there can go on
   bool is_held = false;    // by a front that can go on
@@ -47,7 +48,7 @@ class EdgeSampler {
         pose_(pose),
         fronts_(fronts),
         cuts_(body.surface, fronts),
-        place_(body.surface) {}
+        place_(body) {}
 
   Sample at(double parameter) {
     Sample s;
@@ -55,7 +56,8 @@ class EdgeSampler {
     s.world = pose_ * place_on(blade_, parameter);
     const std::optional<Vec3> before = place_on(fronts_, parameter);
     const InverseDeformation::Location place = map_.to_material(s.world, memory_, before ? &*before : nullptr);
-    s.material = place_.resolved(place.position);
+    s.place = place_.at(place.position, pose_.rotation * direction_on(blade_, parameter));
+    s.material = place_.outside(s.place);
     s.within = place.in_support;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
@@ -106,6 +108,15 @@ class EdgeSampler {
   InverseDeformation::VertexCache memory_;
 };
 
+// Puts the samples of an edge outside the planes of the skin that others of them may lie in.
+void leave_planes(const Body& body, std::vector<Sample>& samples) {
+  const MappedPlaces on(body);
+  std::vector<MappedPlace> places;
+  for (const Sample& s : samples) places.push_back(s.place);
+  on.share_planes(places);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].material = on.outside(places[i]);
+}
+
 // All samples of an edge. Threads trace parts of it: a sample does not depend on the others.
 std::vector<Sample> sample_edge(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
                                 std::span<const EdgeFront> fronts) {
@@ -123,6 +134,7 @@ std::vector<Sample> sample_edge(const InverseDeformation& map, const Body& body,
   });
   std::vector<Sample> samples;
   for (const auto& segment : segments) samples.insert(samples.end(), segment.begin(), segment.end());
+  leave_planes(body, samples);
   return samples;
 }
 
@@ -308,8 +320,11 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
 std::vector<EdgePoint> closed_run(const InverseDeformation& map, const Body& body, const Blade& blade, const Pose& pose,
                                   std::span<const EdgeFront> fronts) {
   EdgeSampler sampler(map, body, blade, pose, fronts);
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < blade.points.size(); ++i) samples.push_back(sampler.at(double(i)));
+  leave_planes(body, samples);
   std::vector<EdgePoint> run;
-  for (std::size_t i = 0; i < blade.points.size(); ++i) run.push_back(sampler.at(double(i)).point());
+  for (const Sample& s : samples) run.push_back(s.point());
   return run;
 }
 

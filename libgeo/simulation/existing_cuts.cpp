@@ -131,7 +131,7 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
   if (std::count(is_whole.begin(), is_whole.end(), 1) == 0) return begin;
   const MapAt start(moved, blade, before);
   const ExistingCuts cuts(surface, fronts);
-  const MappedPlaces places(surface);
+  const MappedPlaces places(moved.body);
   InverseDeformation::VertexCache memory;
   std::vector<std::uint8_t> is_in_air(begin.size(), 0), is_in_cut(begin.size(), 0);
   std::vector<Vec3> rise(begin.size(), Vec3::Zero());  // of points in cuts, over the sheet
@@ -151,8 +151,11 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
   for (std::size_t i = 0; i < begin.size(); ++i) {
     // Beside the skin, the front is as high over the sheet in air as it is inside.
     if (const auto k = nearest_marked(is_in_cut, i); k && is_in_air[i]) begin[i].material += rise[*k];
-    begin[i].material = places.resolved(begin[i].material);
   }
+  std::vector<Vec3> material;
+  for (const EdgePoint& p : begin) material.push_back(p.material);
+  material = places.resolved(material);
+  for (std::size_t i = 0; i < begin.size(); ++i) begin[i].material = material[i];
   return begin;
 }
 

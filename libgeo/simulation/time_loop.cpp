@@ -8,16 +8,12 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "simulation/fracture_step.h"
+#include "simulation/mapped_places.h"
 #include "simulation/scene_body.h"
 #include "simulation/timed.h"
 
 namespace geo {
 namespace {
-
-// A sheet snaps to vertices and edges nearer than this, in spacings of the finest nodes: a
-// twentieth of what a front deviates from its blade's edge (edge_runs.cpp), and far above the
-// slivers that weights of nodes fold.
-constexpr double snap_spacings = 0.001;
 
 CrackOptions crack_options(const Scene& scene, const Body& body) {
   CrackOptions options;

@@ -177,6 +177,22 @@ TEST_CASE("what a scene computes does not depend on its place", "[placements]") 
   CHECK(20 * grazing.size() <= static_cast<std::size_t>(all.count) / ways.size() + 20);
 }
 
+// Strokes along faces, over their ridges and from the air beside them. The coordinates of the block
+// are no multiples of the resolution of mapped places.
+TEST_CASE("a blade in a block's own face cuts nothing", "[placements]") {
+  for (const std::uint64_t scene : {11625263, 11625086}) {
+    const CutScene cut = random_cut_scene(scene);
+    const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
+    for (const Placement& way : placements()) {
+      const CutScene moved = placed(cut, way);
+      INFO(scene << " " << moved.about);
+      Simulation sim = simulation_of(moved, placed(nodes, way));
+      for (int f = 0; f < moved.scene.frames; ++f) sim.advance_frame();
+      CHECK(sim.body().surface.live_face_count() == moved.models.all.triangles.size());
+    }
+  }
+}
+
 // KERF_SCENES='out/halve.toml out/polyp.toml' KERF_FRAMES=16 test_simulation '[scenes]': scenes of
 // samples/scenes whose models exist; KERF_FRAMES: at most that many.
 TEST_CASE("scenes of files cross nothing, wherever they are", "[.scenes]") {

@@ -1,6 +1,7 @@
 // Conjugate gradients: what a direction may leave, and what moves as a whole.
 #include "mechanics/solver/conjugate_gradients.h"
 
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 #include "base/random.h"
@@ -31,8 +32,8 @@ struct Linearised {
   SolverCache cache;
   TwoLevelPreconditioner preconditioner;
 
-  Linearised(double young, double dt, double accuracy, double spacing = 0.1)
-      : body(block_body({0.8, 0.3, 0.3}, spacing)),
+  Linearised(double young, double dt, double accuracy, double spacing = 0.1, const Vec3& edges = {0.8, 0.3, 0.3})
+      : body(block_body(edges, spacing)),
         solid(body, rubber(young)),
         start(at_rest(body)),
         problem{SolidDiscretisation::of(solid), start, dt, environment, accuracy},
@@ -131,6 +132,31 @@ TEST_CASE("a direction ends where its residual is below the accuracy, or at a qu
   }
   CHECK(accurate > 10);
   CHECK(early > 10);
+}
+
+// Conjugate gradients end where r · M⁻¹ r is not positive: Newton's method then stood still until
+// its last iteration. A small stiff piece moves easily as a whole, so its inverse is ill-conditioned.
+TEST_CASE("the preconditioner of small stiff pieces is positive definite", "[mechanics]") {
+  const std::uint64_t seed = 33;
+  Random random(seed);
+  for (int k = 0; k < cases(60); ++k) {
+    const double young = std::pow(10.0, random.uniform(4, 9)), dt = 0.01;
+    const Vec3 size{random.uniform(0.15, 0.3), random.uniform(0.1, 0.2), random.uniform(0.08, 0.1)};
+    Linearised piece(young, dt, 1e-4, 0.1, size);
+    const auto n = static_cast<Eigen::Index>(piece.size());
+    INFO("seed " << seed << ", case " << k << ": young " << young << ", size " << size.transpose() << ", " << n
+                 << " nodes");
+    Eigen::MatrixXd inverse(3 * n, 3 * n);
+    for (Eigen::Index c = 0; c < 3 * n; ++c) {
+      std::vector<Vec3> r(piece.size(), Vec3::Zero());
+      r[static_cast<std::size_t>(c / 3)][c % 3] = 1;
+      piece.preconditioner.apply(piece.all, r);
+      for (Eigen::Index i = 0; i < n; ++i)
+        inverse.block<3, 1>(3 * i, c) = piece.preconditioner.at(static_cast<std::size_t>(i));
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(0.5 * (inverse + inverse.transpose()));
+    CHECK(modes.eigenvalues()[0] > 0);
+  }
 }
 
 TEST_CASE("accuracy is relative to what forces correct beyond a tenth of a spacing", "[mechanics]") {

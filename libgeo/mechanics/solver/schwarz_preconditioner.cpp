@@ -14,7 +14,8 @@ namespace {
 // Whether the inverse A of a lane's matrix K stays positive definite, with its eigenvalues within a
 // half, when its numbers are rounded to upper halves. Scaled to a diagonal of ones, A has entries
 // of at most 1, so that rounding is a symmetric matrix of size 3n with entries below u = 2⁻⁹, whose
-// norm is about 2 u √(n) if they are random. The least eigenvalue of A is at most 1 / max K_ii A_ii.
+// norm is about 2 u √n if they are random. The least eigenvalue of A is at most
+// 1 / max K_ii A_ii.
 bool are_halves_positive(std::size_t nodes, std::size_t lane, const EightSubdomains& from) {
   constexpr float rounding = 1.0f / 512;
   float largest = 0;

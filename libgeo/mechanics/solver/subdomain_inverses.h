@@ -52,9 +52,9 @@ class SubdomainInverses {
   std::vector<std::size_t> node_, first_;  // per subdomain and one more: offsets into terms_ and matrix_
   UninitializedArray<std::uint16_t> matrix_;
   std::vector<std::vector<float>> floats_;  // per subdomain
-  std::vector<DiagonalTerm> terms_;  // per node of a subdomain
-  std::vector<Moduli> moduli_;       // per subdomain
-  std::vector<char> valid_;          // per subdomain
+  std::vector<DiagonalTerm> terms_;         // per node of a subdomain
+  std::vector<Moduli> moduli_;              // per subdomain
+  std::vector<char> valid_;                 // per subdomain
 };
 
 }  // namespace geo

@@ -50,8 +50,8 @@ struct EightSubdomains {
   /// Sets the number of nodes and clears all numbers.
   void begin(std::size_t count);
 };
-/// Computes `halves` and `diagonal` from the other members. A row whose pivot is not positive beyond rounding is
-/// left out.
+/// Computes `halves` and `diagonal` from the other members. A row whose pivot is not positive
+/// beyond rounding is left out.
 void invert_positive(EightSubdomains& subdomains);
 /// out = matrix · x for a symmetric matrix of upper halves of floats. Matrix rows, x and out have
 /// padded(size) numbers.

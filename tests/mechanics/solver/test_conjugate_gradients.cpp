@@ -135,7 +135,8 @@ TEST_CASE("a direction ends where its residual is below the accuracy, or at a qu
 }
 
 // Conjugate gradients end where r · M⁻¹ r is not positive: Newton's method then stood still until
-// its last iteration. A small stiff piece moves easily as a whole, so its inverse is ill-conditioned.
+// its last iteration. A small stiff piece moves easily as a whole, so its inverse is
+// ill-conditioned.
 TEST_CASE("the preconditioner of small stiff pieces is positive definite", "[mechanics]") {
   const std::uint64_t seed = 33;
   Random random(seed);

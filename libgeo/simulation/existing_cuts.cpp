@@ -148,14 +148,14 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
     p.material = is_in_cut[i] ? sheet.over(height, p.material, 2 * height) : place.position;
     rise[i] = height * sheet.normal;
   }
+  std::vector<Vec3> edge;
   for (std::size_t i = 0; i < begin.size(); ++i) {
     // Beside the skin, the front is as high over the sheet in air as it is inside.
     if (const auto k = nearest_marked(is_in_cut, i); k && is_in_air[i]) begin[i].material += rise[*k];
+    edge.push_back(begin[i].material);
   }
-  std::vector<Vec3> material;
-  for (const EdgePoint& p : begin) material.push_back(p.material);
-  material = places.resolved(material);
-  for (std::size_t i = 0; i < begin.size(); ++i) begin[i].material = material[i];
+  edge = places.resolved(edge);
+  for (std::size_t i = 0; i < begin.size(); ++i) begin[i].material = edge[i];
   return begin;
 }
 

@@ -10,7 +10,7 @@
 namespace geo {
 namespace {
 
-constexpr int bits_of_map = 33;  // see MappedPlaces::resolved()
+constexpr int bits_of_map = 33;  // see MappedPlaces::at()
 // Cosine of normals of faces that lie in one plane, but for rounding: an angle of 1.4e-6.
 constexpr double flat = 1 - 1e-12;
 // Sine of the angle between a plane and an edge in it, but for rounding: places are exact to
@@ -44,21 +44,19 @@ MappedPlace MappedPlaces::at(const Vec3& place, const Vec3& along) const {
   const Vec3& p = result.rounded;
   std::vector<FaceId> near;
   surface_.faces_near(Box3{p, p}.grown(beside_skin_), near);
-  bool is_at_ridge = false;
   for (const FaceId f : near) {
     if (surface_.face(f).crack != 0) continue;
     const auto [a, b, c] = surface_.corners(f);
     const Vec3 normal = (b - a).cross(c - a).normalized();
     if (!(std::abs(normal.dot(p - a)) < reach())) continue;
+    if (has(result, normal)) continue;
     const bool holds = std::abs(normal.dot(along)) <= level * along.norm();
-    const bool is_on = (closest_point_on_triangle(p, a, b, c) - p).norm() < reach();
-    if (!(is_on || holds) || has(result, normal)) continue;
-    is_at_ridge = !result.planes.empty();
+    if (!holds && (closest_point_on_triangle(p, a, b, c) - p).norm() >= reach()) continue;
     result.planes.push_back({.normal = normal,
                              .offset = normal.dot(a),
                              .edge = holds ? MappedPlace::Edge::in_plane : MappedPlace::Edge::crosses});
   }
-  if (is_at_ridge) std::erase_if(result.planes, [&](const auto& plane) { return !holds_edge(plane); });
+  if (result.planes.size() > 1) std::erase_if(result.planes, [&](const auto& plane) { return !holds_edge(plane); });
   return result;
 }
 

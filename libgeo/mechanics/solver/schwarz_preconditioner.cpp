@@ -120,27 +120,27 @@ void SchwarzPreconditioner::load(std::size_t subdomain, bool isotropic, const st
 // Reads the inverse of a subdomain from its lane, both triangles.
 void SchwarzPreconditioner::store(std::size_t subdomain, std::size_t lane, const EightSubdomains& from) {
   const std::size_t nodes = subdomains_.nodes(subdomain).size(), stride = padded(3 * nodes);
-  std::vector<float>& floats = inverse_.floats(subdomain);
-  floats.clear();
-  if (!are_halves_positive(nodes, lane, from)) {
-    floats.assign(3 * nodes * stride, 0);
-    const float* tile = &from.tiles[lane];
+  // number(a, b, at): of the tile of nodes a and b, at this index of the lists of eight lanes.
+  const auto copy = [&](auto* to, const auto& number) {
+    std::size_t tile = lane;
     for (std::size_t a = 0; a < nodes; ++a)
       for (std::size_t b = 0; b <= a; ++b, tile += 72)
-        for (std::size_t r = 0; r < 3; ++r)
-          for (std::size_t c = 0; c < 3; ++c)
-            floats[(3 * a + r) * stride + 3 * b + c] = floats[(3 * b + c) * stride + 3 * a + r] =
-                -from.share[8 * a + lane] * from.share[8 * b + lane] * tile[8 * (3 * r + c)];
-  }
-  std::uint16_t* const to = inverse_.matrix(subdomain);
-  const std::uint16_t* tile = &from.halves[lane];
-  for (std::size_t a = 0; a < nodes; ++a)
-    for (std::size_t b = 0; b <= a; ++b, tile += 72)
-      for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < 3; ++c)
-          to[(3 * a + r) * stride + 3 * b + c] = to[(3 * b + c) * stride + 3 * a + r] = tile[8 * (3 * r + c)];
+        for (std::size_t k = 0; k < 9; ++k) {
+          const std::size_t r = 3 * a + k / 3, c = 3 * b + k % 3;
+          to[r * stride + c] = to[c * stride + r] = number(a, b, tile + 8 * k);
+        }
+  };
+  std::uint16_t* const halves = inverse_.matrix(subdomain);
+  copy(halves, [&](std::size_t, std::size_t, std::size_t at) { return from.halves[at]; });
   for (std::size_t i = 0; i < 3 * nodes; ++i)
-    std::fill(to + i * stride + 3 * nodes, to + (i + 1) * stride, std::uint16_t(0));
+    std::fill(halves + i * stride + 3 * nodes, halves + (i + 1) * stride, std::uint16_t(0));
+  std::vector<float>& floats = inverse_.floats(subdomain);
+  floats.clear();
+  if (are_halves_positive(nodes, lane, from)) return;
+  floats.assign(3 * nodes * stride, 0);
+  copy(floats.data(), [&](std::size_t a, std::size_t b, std::size_t at) {
+    return -from.share[8 * a + lane] * from.share[8 * b + lane] * from.tiles[at];
+  });
 }
 
 void SchwarzPreconditioner::solve(const std::vector<Vec3>& r, std::span<const std::uint32_t> subdomains) {

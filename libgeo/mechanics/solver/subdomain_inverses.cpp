@@ -26,7 +26,7 @@ void SubdomainInverses::begin(const Subdomains& subdomains) {
 }
 
 void SubdomainInverses::update(const Subdomains& subdomains, std::span<const std::uint32_t> former) {
-  SubdomainInverses before = std::exchange(*this, {});
+  const SubdomainInverses before = std::exchange(*this, {});
   begin(subdomains);
   parallel_for(former.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {

@@ -17,6 +17,13 @@
 namespace geo {
 namespace {
 
+// The node at exactly this place, if there is one: two taut paths through one passage may share
+// their corners.
+NodeId node_at(const Body& body, const Vec3& x) {
+  const auto nearest = body.cache->grid.nearest(body.nodes.position, x, 1, ~0u, [](std::uint32_t) { return true; });
+  return !nearest.empty() && body.nodes.position[nearest[0]] == x ? NodeId(nearest[0]) : NodeId();
+}
+
 // Inserts nodes along a taut path from node i to node j and records their joins. False, and no
 // nodes, when there is no such path.
 bool insert_nodes_along(NewNodes& inserted, NodeId i, NodeId j, double spacing, std::vector<NodePair>& joins) {
@@ -33,12 +40,15 @@ bool insert_nodes_along(NewNodes& inserted, NodeId i, NodeId j, double spacing, 
       if (!is_blocked(k, path[s], path[n])) next = n;
     NodeId node = j;
     if (next + 1 < path.size()) {
-      node = inserted.insert(path[next], donors.front(), spacing);
-      donors.push_back(donors.front());
-      donors.push_back(node);
-      donors.pop_front();
+      node = node_at(body, path[next]);
+      if (!node.valid()) {
+        node = inserted.insert(path[next], donors.front(), spacing);
+        donors.push_back(donors.front());
+        donors.push_back(node);
+        donors.pop_front();
+      }
     }
-    joins.push_back({std::min(last, node), std::max(last, node)});
+    if (node != last) joins.push_back({std::min(last, node), std::max(last, node)});
     last = node;
     s = next;
   }

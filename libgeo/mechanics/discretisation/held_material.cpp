@@ -22,6 +22,9 @@ constexpr double width = 0.55;
 // Least distance of the fourth anchor from the plane of the others, in support radii: coordinates
 // near the box stay below about twenty.
 constexpr double least_height = 0.05;
+// Sum of the absolute coordinates of a point in a box, four of up to about twenty. It is larger
+// where a crack has moved an anchor into the plane of the others.
+constexpr double most_weights = 80;
 
 bool holds(const HeldBox& box, const Vec3& x) {
   return (x.array() >= box.lo.array()).all() && (x.array() <= box.hi.array()).all();
@@ -140,6 +143,25 @@ double HeldMaterial::reach_of(const NodeSet& nodes) {
 bool HeldMaterial::is_near(const Vec3& x, double reach) const {
   return std::any_of(boxes_.begin(), boxes_.end(),
                      [&](const HeldBox& box) { return (x - nearest_in(box, x)).norm() < reach; });
+}
+
+std::optional<std::array<NodeWeight, 4>> HeldMaterial::weights_in_box(const Vec3& x,
+                                                                      const std::vector<Vec3>& position) const {
+  const auto box = std::find_if(boxes_.begin(), boxes_.end(), [&](const HeldBox& b) { return holds(b, x); });
+  if (box == boxes_.end()) return {};
+  const auto number = static_cast<std::uint32_t>(box - boxes_.begin());
+  // Components move alike in a box: any of its anchors will do.
+  const auto anchors =
+      std::find_if(anchors_.begin(), anchors_.end(), [&](const Anchors& a) { return a.box == number; });
+  if (anchors == anchors_.end()) return {};
+  // Not with the coordinates of the anchors: a crack may have moved a node since.
+  Eigen::Matrix4d corners;
+  for (Eigen::Index a = 0; a < 4; ++a) corners.col(a) << 1, position[anchors->node[static_cast<std::size_t>(a)]];
+  const Eigen::Vector4d weight = corners.partialPivLu().solve(Eigen::Vector4d(1, x[0], x[1], x[2]));
+  if (!(weight.lpNorm<1>() < most_weights)) return {};
+  std::array<NodeWeight, 4> weights;
+  for (std::size_t a = 0; a < 4; ++a) weights[a] = {anchors->node[a], weight[static_cast<Eigen::Index>(a)]};
+  return weights;
 }
 
 bool HeldMaterial::set_boxes(std::span<const HeldBox> boxes) {

@@ -72,6 +72,10 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
       append(*run.shape, place);
     else
       append(run, local_nodes[run.block]);
+  node_share.assign(nodes.size(), 0);
+  for (std::size_t p = 0; p < points.size(); ++p)
+    for (auto e = entry_begin[p]; e < entry_begin[p + 1]; ++e)
+      node_share[entry_node[e]] += 1.0 / (entry_begin[p + 1] - entry_begin[p]);
   entry_gradient_single.push_back(0);  // vector loads of an entry read four numbers
   quantum.assign((points.size() + 7) / 8 * 8, 0);
   quad_begin.assign(1, 0);
@@ -238,6 +242,13 @@ bool operator==(const PointBlock& a, const PointBlock& b) {
          a.entry_gradient == b.entry_gradient && a.entry_bent == b.entry_bent && a.quad_begin == b.quad_begin &&
          a.quad_node == b.quad_node && a.quad_gradient == b.quad_gradient && a.quantum == b.quantum &&
          std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(), same);
+}
+
+std::vector<double> MaterialPoints::shares(std::size_t nodes) const {
+  std::vector<double> share(nodes, 0);
+  for (const PointBlock& block : blocks)
+    for (std::size_t k = 0; k < block.nodes.size(); ++k) share[block.nodes[k]] += block.node_share[k];
+  return share;
 }
 
 void MaterialPoints::number_points(std::size_t nodes) {

@@ -46,6 +46,7 @@ struct PointBlock {
   std::vector<double> entry_gradient;        ///< per entry: three numbers, the shape gradient
   std::vector<float> entry_gradient_single;  ///< the same in single precision
   std::vector<std::uint8_t> entry_bent;      ///< per entry: 1 if the point sees the node round the front of a crack
+  std::vector<double> node_share;            ///< per node: Σ 1 / n over the points that it supports, n their nodes
   // The same quantised to 16 bits, for stiffness–vector products, with points in quads (four points
   // side by side). A quad's nodes are the union of its points' nodes, padded to an even number.
   // Nodes come in pairs of 24 integers: x of the first node's gradient for four points, x of the
@@ -135,6 +136,9 @@ class MaterialPoints {
   /// first node: differences stay accurate if the body has moved far. `values` grows if it is too
   /// short.
   void gather(std::size_t block, const std::vector<Vec3>& u, std::vector<double>& values) const;
+  /// Per node, of `nodes`: Σ 1 / n over the points that it supports, n the number of nodes of a
+  /// point. All shares sum up to the number of points with strain.
+  std::vector<double> shares(std::size_t nodes) const;
   /// ∇u at the points of a block, in order.
   std::vector<Mat3> gradients(std::size_t block, const std::vector<Vec3>& u) const;
 

@@ -15,6 +15,11 @@
 namespace geo {
 namespace {
 
+// Directions in which the neighbours extend less than a thirtieth of the largest extent (1e-3 of its
+// square) carry no gradient: it would divide the noise of contact by next to nothing. A chain of
+// nodes in a flap between two cuts is such a star (docs/decisions/101).
+constexpr double least_spread = 1e-3;
+
 NodalGradientOperator::Node build(std::uint32_t i, const NodeSet& nodes, const VisibilityGraph& graph) {
   NodalGradientOperator::Node node;
   Mat3 moment = Mat3::Zero();
@@ -32,14 +37,13 @@ NodalGradientOperator::Node build(std::uint32_t i, const NodeSet& nodes, const V
     sum += w;
     moment += w / (scale * scale) * x * x.transpose();
   }
-  // Pseudo-inverse: directions in which the neighbours extend less than a hundredth of the largest
-  // extent (1e-4 of its square) carry no gradient.
+  // Pseudo-inverse: where neighbours hardly extend, there is no gradient.
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(moment);
   const Vec3 values = eigen.eigenvalues();
   Vec3 inverse = Vec3::Zero();
   int rank = 0;
   for (int k = 0; k < 3; ++k)
-    if (values[k] > 1e-4 * values[2] && values[k] > 0) {
+    if (values[k] > least_spread * values[2] && values[k] > 0) {
       inverse[k] = 1 / values[k];
       ++rank;
     }

@@ -18,11 +18,11 @@ namespace {
 
 constexpr std::size_t least_nodes = 4;   // that determine a linear field
 constexpr std::size_t enough_nodes = 8;  // a point with fewer nodes widens its support
-constexpr double ill_conditioned = 500;  // and so does one with a larger condition number; larger: fewer are widened
+constexpr double ill_conditioned = 500;  // and so does one with a larger condition number; larger: fewer are widened.
+                                         // A point where none is wide enough carries no strain
 // So does a point from which a face hides nodes, if a shape gradient is steeper than this, in units
 // of 1 / support radius (docs/decisions/061).
 constexpr double steepest_shape = 4;
-constexpr double without_strain = 1e7;  // times the rounding unit 1e-16: linear fields would be off by 1e-9
 constexpr std::size_t least_tasks = 4, max_tasks = 32;  // of a batch; affects speed alone
 // A path to a node that is shorter than its support S admits stays within ½ √(L² − s²) of the box
 // of point and node, with s their distance and L = (S / s)^¼ s. That is at most 0.1624 S, where s =
@@ -333,9 +333,7 @@ struct Batch {
     }
     const double condition =
         shape_gradients(x, scratch.seen, shape.gradient, task.with_values ? &shape.value : nullptr, ill_conditioned);
-    point.quality = condition <= ill_conditioned  ? MomentQuality::good
-                    : condition <= without_strain ? MomentQuality::poor
-                                                  : MomentQuality::singular;
+    point.quality = condition <= ill_conditioned ? MomentQuality::good : MomentQuality::singular;
     const bool enough = shape.nodes.size() >= enough_nodes && point.quality == MomentQuality::good &&
                         !(point.occluded && is_steep(shape, scratch.seen));
     if (point.quality == MomentQuality::singular) {

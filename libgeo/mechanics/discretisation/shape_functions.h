@@ -12,8 +12,7 @@
 namespace geo {
 
 /// The quality of the moment matrix at a point. `good`: full rank and well-conditioned, if need be
-/// with a wider support. `poor`: ill-conditioned; at nodes: of lower rank. `singular`: the point
-/// carries no strain.
+/// with a wider support. `poor`: at nodes, of lower rank. `singular`: the point carries no strain.
 enum class MomentQuality : std::uint8_t { good, poor, singular };
 
 /// Gradients of a point's shape functions: ∇u = Σ u_j gradient_jᵀ, exact where u is linear.

@@ -1,5 +1,5 @@
 // Rotations are those nearest to Σ w (x_j − x_i) (X_j − X_i)ᵀ, X at rest and x now, plus a small
-// multiple of the last rotation. That multiple decides about directions without nodes.
+// multiple of last rotations. That multiple decides about directions without nodes.
 #include "mechanics/solver/debris.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace geo {
 namespace {
 
 // Share of the last rotation in a fit, of the trace of Σ w (X_j − X_i) (X_j − X_i)ᵀ. It decides
-// about directions in which nodes extend less than a thirtieth of their extent.
-constexpr double memory = 1e-3;
+// about directions in which nodes extend less than a sixth of their extent.
+constexpr double memory = 0.03;
 
 // The rotation nearest to `fit`, whose trace at rest is `size`.
 Mat3 rotation_of(const Mat3& fit, double size, const Mat3& last) {
@@ -99,18 +99,23 @@ void make_rigid(const SolidDiscretisation& solid, const RigidBody& body, State& 
   }
 }
 
-// The rotation about a node by its neighbours, as far as they determine it.
+// The rotation about a node by its neighbours; where they do not determine it, the mean of the last
+// rotations of it and them. So the rotation of a flap's base reaches its tip, from node to node.
 Mat3 rotation_about(const SolidDiscretisation& solid, std::uint32_t i, const State& state) {
   const auto& node = solid.mls[i];
-  Mat3 fit = Mat3::Zero();
+  Mat3 fit = Mat3::Zero(), mean = state.rotation[i];
   double size = 0;
   for (std::size_t q = 0; q < node.neighbors.size(); ++q) {
+    const auto j = node.neighbors[q];
     const Vec3& rest = node.offset[q];
     const double w = node.normalised_weight[q];
-    fit += w * (rest + state.displacement[node.neighbors[q]] - state.displacement[i]) * rest.transpose();
+    fit += w * (rest + state.displacement[j] - state.displacement[i]) * rest.transpose();
     size += w * rest.squaredNorm();
+    mean += solid.mls.quality(j) == MomentQuality::good
+                ? nearest_rotation(Mat3::Identity() + solid.mls.gradient(j, state.displacement)).rotation
+                : state.rotation[j];
   }
-  return rotation_of(fit, size, state.rotation[i]);
+  return rotation_of(fit, size, mean / double(node.neighbors.size() + 1));
 }
 
 }  // namespace
@@ -122,7 +127,9 @@ void keep_debris_rigid(const SolidDiscretisation& solid, const std::vector<std::
   if (incomplete.empty()) return;
   state.rotation.resize(solid.size(), Mat3::Identity());
   for (const RigidBody& body : rigid_bodies(solid, fixed)) make_rigid(solid, body, state);
-  for (const auto i : incomplete) state.rotation[i] = rotation_about(solid, i, state);
+  std::vector<Mat3> rotations;
+  for (const auto i : incomplete) rotations.push_back(rotation_about(solid, i, state));
+  for (std::size_t k = 0; k < incomplete.size(); ++k) state.rotation[incomplete[k]] = rotations[k];
 }
 
 std::vector<Mat3> rotations_at(const NodalGradientOperator& mls, std::span<const std::uint32_t> nodes,

@@ -89,6 +89,7 @@ void ElasticPotential::evaluate(const ActiveIslands& active, const std::vector<V
       const auto sum = points.sum_at_node<4>(block_forces_.data(), i);
       response->force[i] = -Vec3(sum[0], sum[1], sum[2]);
     });
+  add_stars(active, u, island_energy, response);
   if (solid_.penalty) {  // it joins all components: there is one island
     std::vector<Vec3> gradient(response ? solid_.size() : 0, Vec3::Zero());
     island_energy[0] += solid_.penalty->add(solid_.mls, u, response ? &gradient : nullptr);
@@ -101,7 +102,25 @@ void ElasticPotential::evaluate(const ActiveIslands& active, const std::vector<V
   }
 }
 
+void ElasticPotential::add_stars(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& energy,
+                                 ElasticResponse* response) const {
+  const AsRigidEnergy& stars = solid_.as_rigid;
+  if (response) response->rotation.resize(stars.size());
+  for (std::size_t k = 0; k < stars.size(); ++k) {
+    const auto island = active.islands().of(stars.node(k));
+    if (!active[island]) continue;
+    Mat3 rotation;
+    energy[island] += stars.energy(k, u, rotation);
+    if (!response) continue;
+    response->rotation[k] = rotation;
+    stars.add_force(k, u, rotation, response->force);
+  }
+}
+
 void ElasticPotential::linearise(const ActiveIslands& active, const ElasticResponse& response) {
+  rotation_.resize(solid_.as_rigid.size());
+  for (std::size_t k = 0; k < rotation_.size(); ++k)
+    if (active[active.islands().of(solid_.as_rigid.node(k))]) rotation_[k] = response.rotation[k];
   std::vector<StiffnessConstants> constants;  // per material
   for (const Material& m : solid_.materials.all()) {
     constants.push_back(stiffness_constants(m));
@@ -142,6 +161,10 @@ void ElasticPotential::linearise_block(std::size_t block, const std::vector<Stif
 }
 
 void ElasticPotential::multiply(const ActiveIslands& active, const std::vector<Vec3>& p) {
+  const AsRigidEnergy& stars = solid_.as_rigid;
+  star_product_.assign(stars.empty() ? 0 : solid_.size(), Vec3::Zero());
+  for (std::size_t k = 0; k < stars.size(); ++k)
+    if (active[active.islands().of(stars.node(k))]) stars.add_product(k, rotation_[k], p, star_product_);
   const MaterialPoints& points = solid_.points;
   block_products_.resize(4 * points.scatter_size());
   const auto blocks = active.blocks();

@@ -18,7 +18,8 @@ struct ElasticResponse {
   std::vector<double> energy;  ///< per island, J
   std::vector<Vec3> force;     ///< per node, −∂Ψ/∂u, N
   std::vector<PointMatrices<float>>
-      deformation;  ///< per block and point: F − 1, or F times the relaxation − 1 where plastic
+      deformation;             ///< per block and point: F − 1, or F times the relaxation − 1 where plastic
+  std::vector<Mat3> rotation;  ///< per star of the as-rigid-as-possible energy
 };
 
 /// Elasticity and viscosity of a time step from problem.start on.
@@ -38,12 +39,15 @@ class ElasticPotential {
   /// K p at a node, after multiply(), N.
   Vec3 product_at(std::size_t node) const {
     const auto sum = solid_.points.sum_at_node<4>(block_products_.data(), node);
-    return {sum[0], sum[1], sum[2]};
+    const Vec3 product(sum[0], sum[1], sum[2]);
+    return star_product_.empty() ? product : Vec3(product + star_product_[node]);
   }
   /// The stiffness of the last linearise().
   const PointStiffness& stiffness() const { return stiffness_; }
 
  private:
+  void add_stars(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& energy,
+                 ElasticResponse* response) const;
   void linearise_block(std::size_t block, const std::vector<StiffnessConstants>& constants,
                        const PointMatrices<float>& deformation, PointMatrices<float>& relaxation,
                        StiffnessModes& scratch);
@@ -57,6 +61,8 @@ class ElasticPotential {
   std::vector<double> block_energy_;   // per block and island of the block
   std::vector<double> block_forces_;   // per block and node of the block, four numbers: ∂Ψ/∂u
   std::vector<float> block_products_;  // the same: K p
+  std::vector<Mat3> rotation_;         // per star, of the last linearise()
+  std::vector<Vec3> star_product_;     // per node: the part of K p by stars; empty: there are none
 };
 
 }  // namespace geo

@@ -124,6 +124,28 @@ std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const No
   return moved;
 }
 
+// A node in a held box, and the displacement and velocity of the box there.
+struct BoxMotion {
+  std::size_t node;
+  Vec3 displacement, velocity;
+};
+
+// The motions of new and moved nodes in held boxes: they move as the boxes do. Else the motion of
+// material that is held would depend on which of its nodes anchor it.
+std::vector<BoxMotion> motions_in_boxes(const SolidDiscretisation& before, const NodeSet& nodes,
+                                        std::span<const NodeId> updated, const State& state) {
+  std::vector<BoxMotion> motions;
+  for (const NodeId id : updated) {
+    const std::size_t i = id.index();
+    if (i < before.position.size() && before.position[i] == nodes.position[i]) continue;
+    if (const auto weights = before.held.weights_in_box(nodes.position[i], before.position))
+      motions.push_back({.node = i,
+                         .displacement = weighted_sum(*weights, state.displacement),
+                         .velocity = weighted_sum(*weights, state.velocity)});
+  }
+  return motions;
+}
+
 // The rotation of each updated or new node before a cut, at its donor. Empty without motion.
 std::vector<Mat3> rotations_before(const SolidDiscretisation& before, std::size_t old_count,
                                    std::span<const NodeId> donors, std::span<const NodeId> nodes, const State& state) {
@@ -207,7 +229,14 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
   std::vector<MovedNode> moved;
   const std::vector<double> mass_before = mass;
   const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
-  if (!state.displacement.empty()) moved = extend_motion(*this, nodes, old_count, donors, updated, state);
+  if (!state.displacement.empty()) {
+    const std::vector<BoxMotion> held_nodes = motions_in_boxes(*this, nodes, updated, state);
+    moved = extend_motion(*this, nodes, old_count, donors, updated, state);
+    for (const BoxMotion& m : held_nodes) {
+      state.displacement[m.node] = m.displacement;
+      state.velocity[m.node] = m.velocity;
+    }
+  }
   volume = nodes.volume;
   spacing = nodes.spacing;
   position = nodes.position;

@@ -36,6 +36,7 @@ Solid::Solid(const Body& body, Materials materials)
   if (d.materials.discretisation() == Discretisation::galerkin) {
     d.galerkin.emplace(body, d.component, d.points);
     d.points.set_materials(d.materials);
+    d.update_as_rigid();
     d.build_preconditioner_levels();
   } else {
     d.update_nodal_points(all_nodes(body.nodes.size()));

@@ -68,6 +68,7 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
                         subdomains.update({.position = position, .mls = mls, .spacing = spacing, .points = points},
                                           changed, changes));
       });
+  update_as_rigid();
   apply_held(body, &changes);
   changed.clear();
   const auto& point_before = changes.old_point;
@@ -76,6 +77,16 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
   for (std::size_t i = 0; i < plastic.size(); ++i)
     if (point_before[i] != ~0u) plastic[i] = state.plastic[point_before[i]];
   state.plastic.swap(plastic);
+}
+
+void SolidDiscretisation::update_as_rigid() {
+  // A point has six strains, a node three unknowns: one point a node is twice what determines them.
+  // As sampled, bodies have more than two.
+  constexpr double enough = 1;
+  std::vector<double> stiffness = points.shares(size());
+  for (std::size_t i = 0; i < size(); ++i)
+    stiffness[i] = std::max(0.0, 1 - stiffness[i] / enough) * materials.of(i).young * volume[i];
+  as_rigid = AsRigidEnergy(mls, stiffness);
 }
 
 void SolidDiscretisation::hold(const Body& body, std::span<const HeldBox> boxes) {
@@ -122,6 +133,11 @@ double SolidDiscretisation::elastic_energy(const std::vector<Vec3>& u, std::vect
   if (penalty) sum += penalty->add(mls, u, force);
   if (force)
     for (Vec3& f : *force) f = -f;
+  for (std::size_t k = 0; k < as_rigid.size(); ++k) {
+    Mat3 rotation;
+    sum += as_rigid.energy(k, u, rotation);
+    if (force) as_rigid.add_force(k, u, rotation, *force);
+  }
   return sum;
 }
 

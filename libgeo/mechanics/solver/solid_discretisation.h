@@ -10,6 +10,7 @@
 #include "kerf/body.h"
 #include "kerf/material.h"
 #include "kerf/solid.h"
+#include "mechanics/discretisation/as_rigid_energy.h"
 #include "mechanics/discretisation/galerkin.h"
 #include "mechanics/discretisation/held_material.h"
 #include "mechanics/discretisation/nodal_gradients.h"
@@ -41,6 +42,7 @@ struct SolidDiscretisation {
   MaterialPoints points;                 ///< quadrature points, or one point a node (mueller04)
   std::optional<Galerkin> galerkin;      ///< quadrature cells; none with mueller04
   HeldMaterial held;                     ///< points near boxes that are held; only with quadrature cells
+  AsRigidEnergy as_rigid;                ///< of nodes that too few points strain
   std::optional<ModePenalty> penalty;    ///< on modes that nodal strains do not see; only with mueller04
   std::vector<char> changed;  ///< per node: 1 if its position, spacing or gradient changed since update_points()
 
@@ -70,6 +72,9 @@ struct SolidDiscretisation {
   void update_quadrature_points(const Body& body, State& state, SubdomainInverses& inverses);
   /// Imposes the motion of boxes on their material. The preconditioner keeps the plain basis.
   void hold(const Body& body, std::span<const HeldBox> boxes);
+  /// Gives an energy of their own to nodes with less than one point's share of the points.
+  /// Precondition: points have the plain basis.
+  void update_as_rigid();
   /// Builds subdomains and aggregates from scratch.
   void build_preconditioner_levels();
 

@@ -49,10 +49,12 @@ void TwoLevelPreconditioner::update_schwarz(const IncrementalPotential& potentia
 void TwoLevelPreconditioner::update(const IncrementalPotential& potential, const std::vector<Vec3>& u) {
   if (coarse_ && problem_.environment.contact.empty()) return;
   std::vector<Mat3> nodal_blocks = potential.nodal_blocks_with_contact();
-  if (const auto& penalty = problem_.solid.penalty) {
-    build_coarse(potential, u, nodal_blocks);  // without the penalty, which hardly resists rigid motions
+  const SolidDiscretisation& solid = problem_.solid;
+  if (solid.penalty || !solid.as_rigid.empty()) {
+    build_coarse(potential, u, nodal_blocks);  // without these energies, which hardly resist rigid motions
     std::vector<double> diagonal(nodal_blocks.size(), 0);
-    penalty->add_diagonal(problem_.solid.mls, diagonal);
+    if (solid.penalty) solid.penalty->add_diagonal(solid.mls, diagonal);
+    solid.as_rigid.add_diagonal(diagonal);
     for (std::size_t i = 0; i < nodal_blocks.size(); ++i) nodal_blocks[i] += diagonal[i] * Mat3::Identity();
   }
   parallel_invoke([&] { build_coarse(potential, u, nodal_blocks); }, [&] { update_schwarz(potential, nodal_blocks); });

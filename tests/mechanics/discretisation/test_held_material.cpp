@@ -150,6 +150,47 @@ TEST_CASE("held material after random cuts equals that of a build from scratch, 
   }
 }
 
+TEST_CASE("nodes that are new in a held box move with it", "[held]") {
+  const Seeds all = seeds(20);
+  std::size_t inside = 0;
+  for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Body body = block_body({1.6, 0.8, 0.7}, 0.15);
+    Solid solid(body, soft());
+    const auto boxes = both_ends(1.6, 0.5, 1.1);
+    solid.hold(body, boxes);
+    // One end stands, the other one turns; the nodes between are anywhere.
+    const Mat3 turn = Eigen::AngleAxisd(0.7, random.direction()).toRotationMatrix();
+    const Vec3 spin = random.direction();
+    State state{random_field(body.nodes.size(), 0.1, random), random_field(body.nodes.size(), 0.1, random)};
+    const auto expected = [&](const Vec3& x) -> std::pair<Vec3, Vec3> {
+      return holds(boxes[0], x) ? std::pair<Vec3, Vec3>(Vec3::Zero(), Vec3::Zero())
+                                : std::pair<Vec3, Vec3>(turn * x - x, spin.cross(turn * x));
+    };
+    const auto each_held = [&](std::size_t first, const auto& visit) {
+      for (std::size_t i = first; i < body.nodes.size(); ++i)
+        if (const Vec3& x = body.nodes.position[i]; holds(boxes[0], x) || holds(boxes[1], x)) visit(i, expected(x));
+    };
+    each_held(0, [&](std::size_t i, const auto& motion) {
+      state.displacement[i] = motion.first;
+      state.velocity[i] = motion.second;
+    });
+    const std::size_t before = body.nodes.size();
+    const Vec3 a(-0.2, random.uniform(0.2, 0.6), 0.9), b(1.8, random.uniform(0.2, 0.6), 0.9), step(0, 0, -0.25);
+    auto front = begin_front(blade_at(a, b, step, 0, 3), false, 1);
+    for (int k = 1; k <= 4; ++k) {
+      solid.update_nodes(body, split(body, front, blade_at(a, b, step, k, 3)), state);
+      if (random.below(2) == 0) solid.update_points(body, state);
+    }
+    each_held(before, [&](std::size_t i, const auto& motion) {
+      ++inside;
+      CHECK((state.displacement[i] - motion.first).norm() < 1e-9);
+    });
+  }
+  CHECK(inside > 100);
+}
+
 TEST_CASE("material that is cut off beside a held box is free", "[held]") {
   Body body = block_body({1, 1, 1}, 0.13);
   const double face = 0.4;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "cut_times.h"
@@ -35,7 +37,10 @@ live::Stroke pose(const geo::Box3& box, int frame) {
 }  // namespace
 
 void heap(const std::string& model, Figures& figures) {
-  sim::Setup setup = live::bare_model(model, model_nodes, 'z', {});
+  std::ifstream file(model, std::ios::binary);
+  if (!file) throw std::runtime_error(model + ": cannot be read");
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  sim::Setup setup = live::bare_model(model, bytes, model_nodes, 'z', {}).setup;
   live::adapt_scene(setup.scene, 60, false);
   live::Session session(setup, {});
   const geo::Box3 box = geo::bounding_box(setup.models.all);

@@ -65,9 +65,8 @@ class Changes {
     for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
       ends.push_back(body.nodes.position[block.nodes[block.entry_node[q]]]);
     if (is_touched(p.position, ends)) return true;
-    // A point that is neither occluded nor singular sees all nodes that support it, and no other
-    // support has changed.
-    if (!p.occluded && p.quality != MomentQuality::singular) return false;
+    // A point that is not occluded sees all nodes that support it, and no other support has changed.
+    if (!p.occluded) return false;
     std::vector<std::uint32_t> nodes;
     ends.clear();
     for (const auto j : nodes_near())
@@ -76,7 +75,6 @@ class Changes {
         ends.push_back(x);
       }
     if (is_touched(p.position, ends)) return true;
-    if (!p.occluded) return false;
     forget_settled(block, point, nodes);
     const VisibilityChanges::NearFaces faces = visibility_.seen_from(p.position, near);
     return std::any_of(nodes.begin(), nodes.end(), [&](auto j) {

@@ -74,7 +74,7 @@ PointBlock::PointBlock(std::vector<MaterialPoint> all, std::span<const Source> s
       append(run, local_nodes[run.block]);
   node_share.assign(nodes.size(), 0);
   for (std::size_t p = 0; p < points.size(); ++p)
-    for (auto e = entry_begin[p]; e < entry_begin[p + 1]; ++e)
+    for (auto e = entry_begin[p]; points[p].quality != MomentQuality::singular && e < entry_begin[p + 1]; ++e)
       node_share[entry_node[e]] += 1.0 / (entry_begin[p + 1] - entry_begin[p]);
   entry_gradient_single.push_back(0);  // vector loads of an entry read four numbers
   quantum.assign((points.size() + 7) / 8 * 8, 0);

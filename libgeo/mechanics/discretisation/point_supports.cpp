@@ -189,9 +189,9 @@ struct Batch {
   // Whether what the point saw before is known, and may be true still.
   static bool is_recalled(const SupportTask& task, const VisibilityChanges* changes) {
     if (!changes || !task.before) return false;
-    const MaterialPoint& before = task.before->points[task.point_before];
-    // A singular one keeps no nodes.
-    return before.position == task.point->position && before.quality != MomentQuality::singular;
+    const auto seen = task.before->entry_begin[task.point_before + 1] - task.before->entry_begin[task.point_before];
+    // With fewer nodes, paths round fronts were not tried.
+    return seen >= least_nodes && task.before->points[task.point_before].position == task.point->position;
   }
 
   // The changed faces that lines of sight of the point may touch.
@@ -336,11 +336,8 @@ struct Batch {
     point.quality = condition <= ill_conditioned ? MomentQuality::good : MomentQuality::singular;
     const bool enough = shape.nodes.size() >= enough_nodes && point.quality == MomentQuality::good &&
                         !(point.occluded && is_steep(shape, scratch.seen));
-    if (point.quality == MomentQuality::singular) {
-      shape.nodes.clear();
-      shape.gradient.clear();
-      shape.bent.clear();
-    }
+    // Its nodes are kept, without gradients: what it has seen need not be looked for again.
+    if (point.quality == MomentQuality::singular) shape.gradient.assign(shape.nodes.size(), Vec3::Zero());
     return enough;
   }
 };

@@ -23,7 +23,9 @@ Mat3 rotation_of(const Mat3& fit, double size, const Mat3& last) {
 std::vector<char> strained_components(const SolidDiscretisation& solid) {
   std::vector<char> strained(solid.components, 0);
   for (const PointBlock& block : solid.points.blocks)
-    for (const auto k : block.entry_node) strained[solid.component[block.nodes[k]]] = 1;
+    for (std::size_t p = 0; p < block.points.size(); ++p)
+      if (block.points[p].quality != MomentQuality::singular)
+        strained[solid.component[block.nodes[block.entry_node[block.entry_begin[p]]]]] = 1;
   return strained;
 }
 

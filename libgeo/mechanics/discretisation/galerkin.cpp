@@ -65,7 +65,8 @@ class Changes {
     for (auto q = block.entry_begin[point]; q < block.entry_begin[point + 1]; ++q)
       ends.push_back(body.nodes.position[block.nodes[block.entry_node[q]]]);
     if (is_touched(p.position, ends)) return true;
-    // A point that is not occluded sees all nodes that support it, and no other support has changed.
+    // A point that is not occluded sees all nodes that support it, and no other support has
+    // changed.
     if (!p.occluded) return false;
     std::vector<std::uint32_t> nodes;
     ends.clear();

@@ -15,9 +15,9 @@
 namespace geo {
 namespace {
 
-// Directions in which the neighbours extend less than a thirtieth of the largest extent (1e-3 of its
-// square) carry no gradient: it would divide the noise of contact by next to nothing. A chain of
-// nodes in a flap between two cuts is such a star (docs/decisions/101).
+// Directions in which the neighbours extend less than a thirtieth of the largest extent (1e-3 of
+// its square) carry no gradient: it would divide the noise of contact by next to nothing. A chain
+// of nodes in a flap between two cuts is such a star (docs/decisions/101).
 constexpr double least_spread = 1e-3;
 
 NodalGradientOperator::Node build(std::uint32_t i, const NodeSet& nodes, const VisibilityGraph& graph) {

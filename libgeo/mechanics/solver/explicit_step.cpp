@@ -25,7 +25,8 @@ struct ExplicitStep {
 // Duration of a stable substep. No pressure wave, of speed √((λ + 2 μ + k_v) / ρ), crosses 0.3 of
 // the smallest spacing h of its material. No penalty of frequency ω turns by more than 0.3 rad.
 // The same holds for the as-rigid-as-possible energy, whose eigenvalues are at most twice its
-// diagonal. Viscosity η diffuses momentum: 0.1 h² ρ / η is below the bound h² ρ / (6 η) of a regular grid.
+// diagonal. Viscosity η diffuses momentum: 0.1 h² ρ / η is below the bound h² ρ / (6 η) of a
+// regular grid.
 double stable_duration(const ExplicitStep& step, const std::vector<Vec3>& u) {
   const SolidDiscretisation& solid = step.solid;
   const Environment& env = step.environment;

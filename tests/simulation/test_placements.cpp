@@ -225,6 +225,22 @@ TEST_CASE("a blade in a block's own face cuts nothing", "[placements]") {
   }
 }
 
+// The second stroke grazes the wall of the first, and crosses it beside a face of the block: slivers
+// as long as the block's triangles come off.
+TEST_CASE("a stroke that grazes the wall of an older cut leaves no specks", "[placements]") {
+  const CutScene cut = random_cut_scene(96000464 / 8);
+  const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
+  const auto ways = placements();
+  for (const std::size_t way : {0, 2, 5}) {
+    const CutScene moved = placed(cut, ways[way]);
+    INFO(moved.about);
+    const Outcome outcome = run(moved, simulation_of(moved, placed(nodes, ways[way])));
+    CHECK(specks(outcome) == 0);
+    CHECK(outcome.crossings == 0);
+    CHECK(outcome.volumes.back() > 1e-7);
+  }
+}
+
 // Two strokes through one plane, some hundredths of a spacing apart: the flap between them has a
 // chain of nodes, hardly a material point, and walls on both sides. Steps that find no balance are
 // halved again and again, with hundreds of iterations a frame.

@@ -225,8 +225,8 @@ TEST_CASE("a blade in a block's own face cuts nothing", "[placements]") {
   }
 }
 
-// The second stroke grazes the wall of the first, and crosses it beside a face of the block: slivers
-// as long as the block's triangles come off.
+// The second stroke grazes the wall of the first, and crosses it beside a face of the block:
+// slivers as long as the block's triangles come off.
 TEST_CASE("a stroke that grazes the wall of an older cut leaves no specks", "[placements]") {
   const CutScene cut = random_cut_scene(96000464 / 8);
   const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;

@@ -145,14 +145,17 @@ bool HeldMaterial::is_near(const Vec3& x, double reach) const {
                      [&](const HeldBox& box) { return (x - nearest_in(box, x)).norm() < reach; });
 }
 
+std::uint32_t HeldMaterial::box_holding(const Vec3& x) const {
+  const auto box = std::find_if(boxes_.begin(), boxes_.end(), [&](const HeldBox& b) { return holds(b, x); });
+  return box == boxes_.end() ? no_index : static_cast<std::uint32_t>(box - boxes_.begin());
+}
+
 std::optional<std::array<NodeWeight, 4>> HeldMaterial::weights_in_box(const Vec3& x,
                                                                       const std::vector<Vec3>& position) const {
-  const auto box = std::find_if(boxes_.begin(), boxes_.end(), [&](const HeldBox& b) { return holds(b, x); });
-  if (box == boxes_.end()) return {};
-  const auto number = static_cast<std::uint32_t>(box - boxes_.begin());
+  const std::uint32_t box = box_holding(x);
+  if (box == no_index) return {};
   // Components move alike in a box: any of its anchors will do.
-  const auto anchors =
-      std::find_if(anchors_.begin(), anchors_.end(), [&](const Anchors& a) { return a.box == number; });
+  const auto anchors = std::find_if(anchors_.begin(), anchors_.end(), [&](const Anchors& a) { return a.box == box; });
   if (anchors == anchors_.end()) return {};
   // Not with the coordinates of the anchors: a crack may have moved a node since.
   Eigen::Matrix4d corners;
@@ -258,10 +261,8 @@ bool HeldMaterial::apply(const Body& body, const std::vector<std::uint32_t>& com
   const std::vector<std::uint32_t> component_before = std::exchange(component_, component);
   replaced_.clear();
   if (boxes_.empty()) return false;
-  box_of_node_.assign(body.nodes.size(), no_index);
-  for (std::size_t i = 0; i < box_of_node_.size(); ++i)
-    for (std::uint32_t k = 0; k < boxes_.size() && box_of_node_[i] == no_index; ++k)
-      if (holds(boxes_[k], body.nodes.position[i])) box_of_node_[i] = k;
+  box_of_node_.resize(body.nodes.size());
+  for (std::size_t i = 0; i < box_of_node_.size(); ++i) box_of_node_[i] = box_holding(body.nodes.position[i]);
   std::vector<Anchors> anchors = anchors_of(body, component);
   const bool same_anchors = anchors == anchors_;
   anchors_ = std::move(anchors);

@@ -43,6 +43,8 @@ class HeldMaterial {
              MaterialPoints& points);
 
  private:
+  // The first box that holds x, or ~0u.
+  std::uint32_t box_holding(const Vec3& x) const;
   /// Four nodes of a box and a component. Their displacements give the rigid motion ū as
   /// Σ λ_a(x) u_a, with λ = coordinates · (1, x).
   struct Anchors {

@@ -103,21 +103,36 @@ void make_rigid(const SolidDiscretisation& solid, const RigidBody& body, State& 
 
 // The rotation about a node by its neighbours; where they do not determine it, the mean of the last
 // rotations of it and them. So the rotation of a flap's base reaches its tip, from node to node.
-Mat3 rotation_about(const SolidDiscretisation& solid, std::uint32_t i, const State& state) {
+Mat3 rotation_about(const SolidDiscretisation& solid, std::uint32_t i, const std::vector<Vec3>& u,
+                    const std::vector<Mat3>& last) {
   const auto& node = solid.mls[i];
-  Mat3 fit = Mat3::Zero(), mean = state.rotation[i];
+  Mat3 fit = Mat3::Zero(), mean = last[i];
   double size = 0;
   for (std::size_t q = 0; q < node.neighbors.size(); ++q) {
     const auto j = node.neighbors[q];
     const Vec3& rest = node.offset[q];
     const double w = node.normalised_weight[q];
-    fit += w * (rest + state.displacement[j] - state.displacement[i]) * rest.transpose();
+    fit += w * (rest + u[j] - u[i]) * rest.transpose();
     size += w * rest.squaredNorm();
-    mean += solid.mls.quality(j) == MomentQuality::good
-                ? nearest_rotation(Mat3::Identity() + solid.mls.gradient(j, state.displacement)).rotation
-                : state.rotation[j];
+    mean += last[j];
   }
   return rotation_of(fit, size, mean / double(node.neighbors.size() + 1));
+}
+
+// State::rotation, with those of complete neighbours of incomplete nodes, which their gradients
+// give.
+std::vector<Mat3> last_rotations(const SolidDiscretisation& solid, std::span<const std::uint32_t> incomplete,
+                                 const State& state) {
+  std::vector<std::uint32_t> complete;
+  for (const auto i : incomplete)
+    for (const auto j : solid.mls[i].neighbors)
+      if (solid.mls.quality(j) == MomentQuality::good) complete.push_back(j);
+  std::sort(complete.begin(), complete.end());
+  complete.erase(std::unique(complete.begin(), complete.end()), complete.end());
+  std::vector<Mat3> last = state.rotation;
+  const std::vector<Mat3> rotations = rotations_at(solid.mls, complete, state.displacement);
+  for (std::size_t k = 0; k < complete.size(); ++k) last[complete[k]] = rotations[k];
+  return last;
 }
 
 }  // namespace
@@ -129,9 +144,8 @@ void keep_debris_rigid(const SolidDiscretisation& solid, const std::vector<std::
   if (incomplete.empty()) return;
   state.rotation.resize(solid.size(), Mat3::Identity());
   for (const RigidBody& body : rigid_bodies(solid, fixed)) make_rigid(solid, body, state);
-  std::vector<Mat3> rotations;
-  for (const auto i : incomplete) rotations.push_back(rotation_about(solid, i, state));
-  for (std::size_t k = 0; k < incomplete.size(); ++k) state.rotation[incomplete[k]] = rotations[k];
+  const std::vector<Mat3> last = last_rotations(solid, incomplete, state);
+  for (const auto i : incomplete) state.rotation[i] = rotation_about(solid, i, state.displacement, last);
 }
 
 std::vector<Mat3> rotations_at(const NodalGradientOperator& mls, std::span<const std::uint32_t> nodes,

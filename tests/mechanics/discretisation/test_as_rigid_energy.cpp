@@ -69,6 +69,18 @@ std::vector<Vec3> added(std::vector<Vec3> u, double share, const std::vector<Vec
   return u;
 }
 
+// Random nodes, their energy, and a rigid motion of them.
+struct MovedNodes {
+  explicit MovedNodes(Random& random) : body(random_nodes(random)), energy(energy_of(body, 1)) {
+    const Mat3 turn = Eigen::AngleAxisd(random.uniform(0, 3), random.direction()).toRotationMatrix();
+    const Vec3 shift = random.direction();
+    for (const Vec3& x : body.nodes.position) rigid.push_back(turn * x + shift - x);
+  }
+  Body body;
+  AsRigidEnergy energy;
+  std::vector<Vec3> rigid;
+};
+
 }  // namespace
 
 TEST_CASE("the as-rigid-as-possible energy is that of strains alone, with forces that keep momenta", "[as_rigid]") {
@@ -76,13 +88,8 @@ TEST_CASE("the as-rigid-as-possible energy is that of strains alone, with forces
   for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    const Body body = random_nodes(random);
-    const AsRigidEnergy energy = energy_of(body, 1);
+    const auto [body, energy, rigid] = MovedNodes(random);
     const std::size_t n = body.nodes.size();
-    const Mat3 turn = Eigen::AngleAxisd(random.uniform(0, 3), random.direction()).toRotationMatrix();
-    const Vec3 shift = random.direction();
-    std::vector<Vec3> rigid;
-    for (const Vec3& x : body.nodes.position) rigid.push_back(turn * x + shift - x);
     CHECK(evaluate(energy, rigid) < 1e-20 * n);
 
     const std::vector<Vec3> u = added(rigid, 1, random_field(n, 0.1, random));
@@ -115,12 +122,8 @@ TEST_CASE("the Hessian of the as-rigid-as-possible energy is exact at rest, wher
   for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    const Body body = random_nodes(random);
-    const AsRigidEnergy energy = energy_of(body, 1);
+    const auto [body, energy, rigid] = MovedNodes(random);
     const std::size_t n = body.nodes.size();
-    const Mat3 turn = Eigen::AngleAxisd(random.uniform(0, 3), random.direction()).toRotationMatrix();
-    std::vector<Vec3> rigid;
-    for (const Vec3& x : body.nodes.position) rigid.push_back(turn * x - x);
     std::vector<Mat3> rotations;
     evaluate(energy, rigid, nullptr, &rotations);
     // As small as the nodes' least extent: the energy is of fourth order in what turns them about

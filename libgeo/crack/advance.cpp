@@ -183,20 +183,23 @@ std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, std::
 }
 
 // Joins the specks that a step has cut off to what is beside them: they lose a face of the crack.
-// `deltas`: of the step so far, the insertion last; appends to them. Throws GeometryError where
-// specks are refused.
-void join_specks(Complex& complex, const Snapping& snapping, std::vector<CrackDelta>& deltas) {
-  if (!(snapping.thickness > 0)) return;
+// `deltas`: of the step so far, the insertion last; appends to them. Returns how many there are.
+// Throws GeometryError where specks are refused.
+std::size_t join_specks(Complex& complex, const Snapping& snapping, std::vector<CrackDelta>& deltas) {
+  if (!(snapping.thickness > 0)) return 0;
   const std::size_t insertion = deltas.size() - 1;
   // Two specks that lie on each other are one after the first round.
   constexpr int max_rounds = 4;
+  std::size_t joined = 0;
   for (int round = 0; round < max_rounds; ++round) {
     ComplexEdit edit;
     edit.removed_faces = crack::find_specks(complex, deltas[insertion], snapping.thickness);
-    if (edit.empty()) return;
+    if (edit.empty()) break;
     if (snapping.specks == Snapping::Specks::refuse) throw GeometryError("a speck would come off");
+    joined += edit.removed_faces.size();
     deltas.push_back(complex.apply(edit));
   }
+  return joined;
 }
 
 // The changes of consecutive edits, at least one, as those of one.
@@ -222,7 +225,7 @@ Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>
   const bool is_divided = !deltas.empty();
   deltas.push_back(crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats));
   if (is_divided && deltas.back().empty()) throw GeometryError("edges are divided where nothing is cut");
-  join_specks(complex, snapping, deltas);
+  stats.joined_specks += join_specks(complex, snapping, deltas);
   result.delta = joined(std::move(deltas));
   watch.lap();
   advance_contacts(result.front, complex, strip, arrangement, vertex);
@@ -294,6 +297,7 @@ CrackStats& CrackStats::operator+=(const CrackStats& o) {
   attempts += o.attempts;
   snapped += o.snapped;
   repairs += o.repairs;
+  joined_specks += o.joined_specks;
   near_seconds += o.near_seconds;
   meet_seconds += o.meet_seconds;
   split_seconds += o.split_seconds;

@@ -159,19 +159,32 @@ class Snapper {
     return static_cast<std::uint32_t>(strip_.points.size() - 1);
   }
 
-  // The first edge that passes within reach of q.
+  // Whether ab is an edge of K. The strip is joined to K there, and would come off if ab went
+  // through a point beside that edge. Ends of the old front are fixed, so free ones are not on K.
+  bool is_edge_of_complex(std::uint32_t a, std::uint32_t b) const {
+    if (!strip_.fixed[a] || !strip_.fixed[b]) return false;
+    const Vec3 &p = strip_.points[a], &q = strip_.points[b];
+    return std::any_of(strip_.near.begin(), strip_.near.end(), [&](FaceId f) {
+      const auto corners = complex_.corners(f);
+      return std::find(corners.begin(), corners.end(), p) != corners.end() &&
+             std::find(corners.begin(), corners.end(), q) != corners.end();
+    });
+  }
+
+  // The first edge that passes within reach of q and may be divided.
   std::optional<std::pair<std::uint32_t, std::uint32_t>> edge_near(const Vec3& q) const {
     for (const auto& t : strip_.triangles)
       for (int k = 0; k < 3; ++k) {
         const auto a = t.p[k], b = t.p[(k + 1) % 3];
         const Vec3 e = strip_.points[b] - strip_.points[a], w = q - strip_.points[a];
         const double along = e.dot(w), length = e.squaredNorm();
-        if (along > 0 && along < length && e.cross(w).squaredNorm() <= reach_ * reach_ * length) return {{a, b}};
+        if (along <= 0 || along >= length || e.cross(w).squaredNorm() > reach_ * reach_ * length) continue;
+        if (!is_edge_of_complex(a, b)) return {{a, b}};
       }
     return {};
   }
 
-  // Divides the edge near q there, in each triangle that has it. False when there is none.
+  // Divides the edge near q there, in each triangle that has it. False when there is none to divide.
   bool divide_edge(const Vec3& q) {
     const auto edge = edge_near(q);
     if (!edge) return false;

@@ -41,8 +41,8 @@ Strip strip_of(std::span<const Vec3> points, std::span<const geo::Triangle> tria
 void find_near(Strip& strip, const Complex& complex, double reach);
 
 /// Snaps the strip to vertices of K closer than `reach` (model units): a free point moves to the
-/// vertex; an edge or triangle near a vertex is divided there. Returns the number of vertices
-/// snapped to. Fills `near`.
+/// vertex; a triangle near a vertex is divided there, and an edge that is no edge of K. Returns how
+/// many vertices it snapped to. Fills `near`.
 std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach);
 
 }  // namespace geo

@@ -107,8 +107,10 @@ struct CrackOptions {
 struct CrackStats {
   /// faces_near: pairs of a strip triangle and a near face of K; triangles_cut: divided faces of K;
   /// attempts: the first one included; snapped: vertices of K that the strip was snapped to;
-  /// repairs: attempts in which displaced points removed a fault of rounding.
-  std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0, repairs = 0;
+  /// repairs: attempts in which displaced points removed a fault of rounding; joined_specks: specks
+  /// that lost a face of the crack (CrackOptions::snap_edges).
+  std::size_t faces_near = 0, triangles_cut = 0, new_crack_faces = 0, attempts = 0, snapped = 0, repairs = 0,
+              joined_specks = 0;
   /// near: sweep, near faces, snapping; meet: intersections; split: triangulation; keep:
   /// classification; stitch: edit and commit; guard: checks and repairs after rounding.
   double near_seconds = 0, meet_seconds = 0, split_seconds = 0, keep_seconds = 0, stitch_seconds = 0, guard_seconds = 0;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "base/random.h"
@@ -171,11 +172,14 @@ struct Step {
 std::size_t snap(Strip& strip, Complex& complex, const Snapping& snapping, std::vector<CrackDelta>& deltas) {
   std::size_t count = snap_to_vertices(strip, complex, snapping.reach);
   if (snapping.to == Snapping::To::vertices) return count;
-  // A round divides edges near those that the last one has made: these are few, and shorter.
+  // A round divides edges near those that the last one has made. Where these are not fewer, as in
+  // a strip nearly in a sheet, each round would have several times as many: the rest stays near.
   constexpr int max_rounds = 3;
+  std::size_t last = std::numeric_limits<std::size_t>::max();
   for (int round = 0; round < max_rounds; ++round) {
     const ComplexEdit edit = crack::divide_near_edges(complex, strip, snapping.reach);
-    if (edit.empty()) break;
+    if (edit.empty() || edit.new_vertices.size() >= last) break;
+    last = edit.new_vertices.size();
     deltas.push_back(complex.apply(edit));
     count += snap_to_vertices(strip, complex, snapping.reach);
   }

@@ -57,6 +57,8 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
       const auto index = builder.point(p.position, true);
       if (old.empty() || old.back() != index) old.push_back(index);
     }
+    if (front.has_moved)
+      for (std::size_t k = 0; k + 1 < old.size(); ++k) builder.strip.old_front.emplace_back(old[k], old[k + 1]);
     const auto p = builder.point(next[i], false), q = builder.point(next[(i + 1) % next.size()], false);
     const int s = static_cast<int>(i);
     const bool stands_p = old.front() == p, stands_q = old.back() == q;
@@ -159,16 +161,12 @@ class Snapper {
     return static_cast<std::uint32_t>(strip_.points.size() - 1);
   }
 
-  // Whether ab is an edge of K. The strip is joined to K there, and would come off if ab went
-  // through a point beside that edge. Ends of the old front are fixed, so free ones are not on K.
-  bool is_edge_of_complex(std::uint32_t a, std::uint32_t b) const {
-    if (!strip_.fixed[a] || !strip_.fixed[b]) return false;
-    const Vec3 &p = strip_.points[a], &q = strip_.points[b];
-    return std::any_of(strip_.near.begin(), strip_.near.end(), [&](FaceId f) {
-      const auto corners = complex_.corners(f);
-      return std::find(corners.begin(), corners.end(), p) != corners.end() &&
-             std::find(corners.begin(), corners.end(), q) != corners.end();
-    });
+  // Whether ab is on the line of the old front. The last strip ends there, in K or in the air, and
+  // this one would come off it if ab went through a point beside that line.
+  bool is_on_old_front(std::uint32_t a, std::uint32_t b) const {
+    const auto& edges = strip_.old_front;
+    return std::find(edges.begin(), edges.end(), std::pair(a, b)) != edges.end() ||
+           std::find(edges.begin(), edges.end(), std::pair(b, a)) != edges.end();
   }
 
   // The first edge that passes within reach of q and may be divided.
@@ -179,7 +177,7 @@ class Snapper {
         const Vec3 e = strip_.points[b] - strip_.points[a], w = q - strip_.points[a];
         const double along = e.dot(w), length = e.squaredNorm();
         if (along <= 0 || along >= length || e.cross(w).squaredNorm() > reach_ * reach_ * length) continue;
-        if (!is_edge_of_complex(a, b)) return {{a, b}};
+        if (!is_on_old_front(a, b)) return {{a, b}};
       }
     return {};
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "kerf/crack.h"
@@ -21,6 +22,9 @@ struct Strip {
   std::vector<Vec3> points;
   std::vector<bool> fixed;  ///< per point: it is on the old front, or snapped, and must not move
   std::vector<Triangle> triangles;
+  /// Edges on the line of an old front that has moved, as indices into points: the last strip ends
+  /// there, so they are not divided.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> old_front;
   std::vector<Vec3> new_front;  ///< the points of F_(i+1), as snapped
   /// Faces of K near triangle t: near[near_begin[t]..near_begin[t + 1]); see find_near().
   std::vector<FaceId> near;
@@ -41,8 +45,8 @@ Strip strip_of(std::span<const Vec3> points, std::span<const geo::Triangle> tria
 void find_near(Strip& strip, const Complex& complex, double reach);
 
 /// Snaps the strip to vertices of K closer than `reach` (model units): a free point moves to the
-/// vertex; a triangle near a vertex is divided there, and an edge that is no edge of K. Returns how
-/// many vertices it snapped to. Fills `near`.
+/// vertex; a triangle near a vertex is divided there, and an edge that is not on the old front.
+/// Returns how many vertices it snapped to. Fills `near`.
 std::size_t snap_to_vertices(Strip& strip, const Complex& complex, double reach);
 
 }  // namespace geo

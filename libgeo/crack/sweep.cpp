@@ -182,7 +182,7 @@ class Snapper {
     return {};
   }
 
-  // Divides the edge near q there, in each triangle that has it. False when there is none to divide.
+  // Divides the edge near q there, in each triangle that has it. False when none may be.
   bool divide_edge(const Vec3& q) {
     const auto edge = edge_near(q);
     if (!edge) return false;

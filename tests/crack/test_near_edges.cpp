@@ -143,7 +143,7 @@ struct Plane {
   Vec3 place, normal;
 };
 
-// The shares of the volume of a convex body on each side of each plane, descending: of points in it.
+// The shares of the volume of a convex body between the planes, descending: of points in it.
 std::vector<double> shares_between(const Complex& k, const std::vector<Plane>& planes, Random& random) {
   constexpr int points = 20000;
   std::vector<std::array<Vec3, 3>> skin;

@@ -248,8 +248,8 @@ TEST_CASE("snapping leaves the line of a front that has moved: no vertex beside 
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
     INFO("KERF_CASE=" << seed);
     Random random(seed);
-    // A tetrahedron whose vertex 2 is beside the middle of the old front: its edge 01, or a line that
-    // goes on in the air.
+    // A tetrahedron whose vertex 2 is beside the middle of the old front: its edge 01, or a line
+    // that goes on in the air.
     const Vec3 a(0, 0, 0), b(1, 0, 0);
     const double turn = random.uniform(0, 2 * M_PI), offset = reach * std::pow(10.0, -random.uniform(0.1, 3));
     const Vec3 beside(random.uniform(0.1, 0.9), offset * std::cos(turn), offset * std::sin(turn));

@@ -34,11 +34,16 @@ constexpr std::size_t least_work = 200;
 struct Outcome {
   std::vector<double> volumes;  // of pieces, descending, over that of all
   std::size_t crumbs = 0, crossings = 0, refused = 0;
-  // The largest elastic energy of a frame in which the body is one piece, over Young's modulus and
-  // volume. Afterwards it depends on which piece has a node that a grip holds.
-  double energy = 0;
+  // Per frame until the body is in pieces: the largest elastic energy so far, over Young's modulus
+  // and volume. Afterwards it depends on which piece has a node that a grip holds.
+  std::vector<double> energies;
   double sag = 0;        // the largest motion of a node in these frames
   std::size_t work = 0;  // Newton steps and triangles cut
+
+  // The largest energy of the first frames.
+  double energy(std::size_t frames) const {
+    return energies.empty() || frames == 0 ? 0 : energies[std::min(frames, energies.size()) - 1];
+  }
 };
 
 // A scene of one body at rest, with these nodes.
@@ -54,12 +59,14 @@ Simulation simulation_of(const CutScene& cut, NodeSet nodes) {
 Outcome run(const CutScene& cut, Simulation sim) {
   Outcome outcome;
   FrameStats total;
+  bool is_whole = true;
   for (int f = 0; f < cut.scene.frames; ++f) {
     const FrameStats stats = sim.advance_frame();
     total += stats;
     outcome.crossings += count_crossings(sim.surface());
-    if (find_pieces(sim.body().surface).volume.size() > 1) continue;
-    outcome.energy = std::max(outcome.energy, stats.energy);
+    is_whole = is_whole && find_pieces(sim.body().surface).volume.size() == 1;
+    if (!is_whole) continue;
+    outcome.energies.push_back(std::max(outcome.energy(outcome.energies.size()), stats.energy));
     for (const Vec3& u : sim.state().motion.displacement) outcome.sag = std::max(outcome.sag, u.norm());
   }
   outcome.refused = total.refused;
@@ -71,7 +78,7 @@ Outcome run(const CutScene& cut, Simulation sim) {
   for (const double v : pieces.volume) outcome.volumes.push_back(v / all);
   std::sort(outcome.volumes.rbegin(), outcome.volumes.rend());
   outcome.crumbs = total.sheet.crumbs;
-  outcome.energy /= cut.scene.material.young * all;
+  for (double& energy : outcome.energies) energy /= cut.scene.material.young * all;
   return outcome;
 }
 
@@ -99,8 +106,11 @@ std::size_t specks(const Outcome& o) {
 bool are_alike(const CutScene& cut, const Outcome& a, const Outcome& b) {
   const double same = cut.is_thin ? same_energy_of_thin : same_energy;
   const std::size_t spare = least_work * cut.scene.blades.size();
-  return are_same_pieces(a.volumes, b.volumes) && b.energy < same * a.energy + least_energy &&
-         a.energy < same * b.energy + least_energy && b.work < 2 * a.work + spare && a.work < 2 * b.work + spare;
+  // A last bridge may last one frame more, and is stretched in it.
+  const std::size_t frames = std::min(a.energies.size(), b.energies.size());
+  return are_same_pieces(a.volumes, b.volumes) && b.energy(frames) < same * a.energy(frames) + least_energy &&
+         a.energy(frames) < same * b.energy(frames) + least_energy && b.work < 2 * a.work + spare &&
+         a.work < 2 * b.work + spare;
 }
 
 // The scene with each blade displaced by a distance.
@@ -117,7 +127,13 @@ CutScene disturbed(CutScene cut, double distance, Random& random) {
 bool is_between(const CutScene& cut, const Outcome& o, const std::vector<Outcome>& others) {
   Outcome low = others[0], high = others[0];
   std::size_t pieces = o.volumes.size();
-  for (const Outcome& other : others) pieces = std::max(pieces, other.volumes.size());
+  std::size_t frames = o.energies.size();
+  for (const Outcome& other : others) {
+    pieces = std::max(pieces, other.volumes.size());
+    frames = std::min(frames, other.energies.size());
+  }
+  double least_of_others = others[0].energy(frames);
+  double most_of_others = least_of_others;
   low.volumes.resize(pieces, 0);
   high.volumes.resize(pieces, 0);
   for (const Outcome& other : others) {
@@ -126,19 +142,21 @@ bool is_between(const CutScene& cut, const Outcome& o, const std::vector<Outcome
       low.volumes[k] = std::min(low.volumes[k], volume);
       high.volumes[k] = std::max(high.volumes[k], volume);
     }
-    low.energy = std::min(low.energy, other.energy);
-    high.energy = std::max(high.energy, other.energy);
+    least_of_others = std::min(least_of_others, other.energy(frames));
+    most_of_others = std::max(most_of_others, other.energy(frames));
     low.work = std::min(low.work, other.work);
     high.work = std::max(high.work, other.work);
   }
   // The nearest that lies between them.
-  Outcome nearest = o;
+  Outcome cut_short = o;
+  cut_short.energies.assign(1, o.energy(frames));
+  Outcome nearest = cut_short;
   nearest.volumes.resize(pieces, 0);
   for (std::size_t k = 0; k < pieces; ++k)
     nearest.volumes[k] = std::clamp(nearest.volumes[k], low.volumes[k], high.volumes[k]);
-  nearest.energy = std::clamp(o.energy, low.energy, high.energy);
+  nearest.energies.assign(1, std::clamp(o.energy(frames), least_of_others, most_of_others));
   nearest.work = std::clamp(o.work, low.work, high.work);
-  return are_alike(cut, nearest, o);
+  return are_alike(cut, nearest, cut_short);
 }
 
 // Whether the place of a scene decides no more than displacements of its blades do, of two sizes:
@@ -167,8 +185,8 @@ std::string told(const Outcome& o) {
     text += number;
   }
   return text + "), " + std::to_string(o.crumbs) + " crumbs, " + std::to_string(o.crossings) + " crossings, " +
-         std::to_string(o.refused) + " refused, energy " + std::to_string(1e6 * o.energy) + "e-6, work " +
-         std::to_string(o.work);
+         std::to_string(o.refused) + " refused, energy " + std::to_string(1e6 * o.energy(o.energies.size())) +
+         "e-6, work " + std::to_string(o.work);
 }
 
 }  // namespace

@@ -258,6 +258,7 @@ typedef struct kerf_impact_options {
   double elongation;  /* length of pieces along the direction over their width */
   uint32_t hull_parts, hull_corners;
   uint64_t seed;
+  int32_t guard; /* 1: no faces of pieces cross by a rounding, either; takes twice as long */
 } kerf_impact_options;
 KERF_API kerf_status kerf_impact_defaults(kerf_impact_options* options);
 

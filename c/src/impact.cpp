@@ -44,7 +44,8 @@ geo::ImpactOptions options_of(const kerf_impact_options* given) {
           .elongation = from.elongation,
           .hull_parts = from.hull_parts,
           .hull_corners = from.hull_corners,
-          .seed = from.seed};
+          .seed = from.seed,
+          .guard = flag_of(from.guard, "guard") ? geo::ImpactGuard::full : geo::ImpactGuard::none};
 }
 
 double seconds_of(double budget_ms) { return 1e-3 * number_of(budget_ms, 0, 1e9, "budget_ms"); }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "crack/insert.h"
 #include "jobs/impact_sites.h"
 #include "kerf/check.h"
 #include "kerf/complex.h"
@@ -127,7 +128,18 @@ struct Breaking::Impl {
     return group;
   }
 
-  // The part, cut along the walls between groups of its sites; one chunk where that fails.
+  void insert(Complex& complex, const TriangleMesh& walls) const {
+    if (options.guard == ImpactGuard::none) {
+      try {
+        return crack::insert_unguarded(complex, walls, 1);
+      } catch (const GeometryError&) {
+        // One attempt was not enough, and the complex is as it was.
+      }
+    }
+    insert_sheet(complex, walls, 1);
+  }
+
+  // The part, cut along the walls between groups of its sites; no chunks where that fails.
   std::vector<Chunk> cut(std::size_t part, const std::vector<Vec3>& sites, const std::vector<int>& group) const {
     const Breakable::Impl& solid = parts[part].solid.impl();
     Complex complex = solid.complex ? *solid.complex : Complex::from_skin(solid.mesh);
@@ -136,7 +148,7 @@ struct Breaking::Impl {
     try {
       const TriangleMesh walls = walls_between(sites, group, box.grown(0.25 * box.diagonal()), stretch);
       if (walls.triangles.empty()) return {};
-      insert_sheet(complex, walls, 1);
+      insert(complex, walls);
     } catch (const GeometryError&) {
       return {};
     }

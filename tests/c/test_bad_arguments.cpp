@@ -372,6 +372,7 @@ std::vector<Call> impact_calls() {
         kerf_impact_defaults(&options);
         if (a.random().below(3) == 0) options.toughness = a.number();
         if (a.random().below(3) == 0) options.max_pieces = a.one_of({2, 5, 0, -1, INT32_MAX});
+        options.guard = a.one_of({0, 0, 1, 2});
         if (a.random().below(3) == 0) options.grading = a.number();
         if (a.random().below(3) == 0) options.elongation = a.number();
         if (a.random().below(3) == 0) options.hull_corners = a.index();

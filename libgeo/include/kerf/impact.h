@@ -42,6 +42,13 @@ struct Impact {
   double energy = 0;              ///< J: the more, the more pieces
 };
 
+/// Whether a break checks, as cracks of other kinds do, that no faces cross where coordinates are
+/// rounded. How faces are joined is exact in any case. The check takes up to two thirds of a break.
+enum class ImpactGuard {
+  none,  ///< faces of a piece may cross by some ulps
+  full,  ///< none cross: pieces are valid models (require_solid())
+};
+
 /// The material, and what becomes of the pieces.
 struct ImpactOptions {
   /// Energy that a new wall takes, J per square model unit. Voronoi cells of n sites in a volume V
@@ -53,6 +60,7 @@ struct ImpactOptions {
   std::size_t hull_parts = 1;     ///< convex hulls of a piece, at most
   std::size_t hull_corners = 32;  ///< of a hull, at most
   std::uint64_t seed = 1;
+  ImpactGuard guard = ImpactGuard::none;
 };
 
 /// A part of a solid that breaks.

@@ -34,7 +34,7 @@ void print_fracture(const std::string& name, const TriangleMesh& model, Pattern 
   ScoreOptions options;
   options.pattern.pattern = pattern;
   options.pattern.seed = 7;
-  options.pieces = 12;
+  options.pieces = 8;
   options.jagged.amplitude = 0.02;
   Complex complex = Complex::from_skin(model);
   const Score score = make_score(complex, options);
@@ -44,7 +44,7 @@ void print_fracture(const std::string& name, const TriangleMesh& model, Pattern 
   print_hash(title + " crack", written([&](std::ostream& out) { write_ply(out, complex.two_sided()); }));
   const PieceSet pieces = fracture(model, options);
   print_hash(title + " glb", written([&](std::ostream& out) {
-               write_glb(out, pieces.chunks, pieces.bonds, pieces.labels, {.hull_corners = 64, .hull_parts = 2});
+               write_glb(out, pieces.chunks, pieces.bonds, pieces.labels, {.hull_corners = 64, .hull_parts = 1});
              }));
   print_hash(title + " obj", written([&](std::ostream& out) { write_obj(out, pieces.chunks[0].mesh); }));
   print_hash(title + " off", written([&](std::ostream& out) { write_off(out, pieces.chunks[1].mesh); }));
@@ -106,7 +106,7 @@ keys = [[0, 0.45, 0, 1.2, 0, 0, 1, 4], [0.15, 0.45, 0, 0.2, 0, 0, 1, 4]]
 int main(int count, char** arguments) {
   if (count > 1) set_threads(std::atoi(arguments[1]));
   for (const Pattern pattern : {Pattern::voronoi, Pattern::glass, Pattern::bricks}) {
-    print_fracture("pumpkin", make_pumpkin(12), pattern);
+    print_fracture("pumpkin", make_pumpkin(8), pattern);
     print_fracture("block", make_block(Vec3(1, 2, 3), 0.5), pattern);
   }
   print_fracture("letter", make_letter('R', 0.3, 14), Pattern::planes);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -40,7 +41,13 @@ void parallel_for_by_threads(int threads, std::size_t count, std::size_t grain,
   };
   std::vector<std::thread> others;
   const std::size_t wanted = std::min<std::size_t>((count + length - 1) / length, std::size_t(std::max(threads, 1)));
-  while (others.size() + 1 < wanted && take_thread(threads - 1)) others.emplace_back(work);
+  others.reserve(wanted);
+  while (others.size() + 1 < wanted && take_thread(threads - 1)) try {
+      others.emplace_back(work);
+    } catch (const std::system_error&) {  // the system has no more threads: those that there are do the work
+      --running;
+      break;
+    }
   work();
   for (std::thread& other : others) other.join();
   running -= static_cast<int>(others.size());

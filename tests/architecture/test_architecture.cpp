@@ -39,6 +39,7 @@ const std::map<std::string, std::string> public_headers{
     {"graph", "graph"},
     {"hierarchy", "surface"},
     {"indirect", "base"},
+    {"impact", "jobs"},
     {"jobs", "jobs"},
     {"kerf", "jobs"},
     {"material", "mechanics/material"},
@@ -69,6 +70,9 @@ struct Door {
 const std::map<std::string, Door> doors{
     {"CGAL/", {{"geometry"}}},
     {"gmp", {{"crack"}, true}},
+    {"boost/", {{"crack", "geometry"}, true}},
+    {"xxhash.h", {{"io"}}},
+    {"zlib.h", {{"io"}}},
     {"openvdb/", {{"io"}}},
     {"pcl/", {{"graph", "io"}}},
     {"tbb/", {{"base"}}},

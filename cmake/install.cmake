@@ -55,7 +55,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME libgeo-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 # What find_package(kerf) asks for.
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libgeo1 (= ${PROJECT_VERSION}), libeigen3-dev, libtbb-dev, libhwy-dev, libcgal-dev, libgmp-dev, libmpfr-dev, libopenvdb-dev, libassimp5, libimath-dev, libblosc-dev, libboost-iostreams-dev, libtomlplusplus-dev, libxxhash-dev, libhdf5-dev, zlib1g-dev, nlohmann-json3-dev, pkg-config")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libgeo1 (= ${PROJECT_VERSION}), libeigen3-dev, libtbb-dev, libhwy-dev, libcgal-dev, libgmp-dev, libmpfr-dev, libopenvdb-dev, libassimp5, libimath-dev, libblosc-dev, libboost-iostreams-dev, libhdf5-dev, zlib1g-dev, pkg-config")
 set(CPACK_DEBIAN_DEV_DESCRIPTION "library that splits deforming solids (development files)\nHeaders, static library and CMake package of libgeo.")
 if(KERF_PYTHON)
   include(cmake/python-package.cmake)

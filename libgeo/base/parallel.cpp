@@ -1,21 +1,12 @@
-// The parallel primitives of kerf/parallel.h, on top of oneTBB; under the thread sanitizer, on top
-// of threads of the standard library (base/parallel_threads.h).
+// The parallel primitives of kerf/parallel.h, on top of base/parallel_backend.h.
 #include "kerf/parallel.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
-
 #include <exception>
-#include <memory>
 
-#include "base/parallel_threads.h"
+#include "base/parallel_backend.h"
 
 namespace geo {
 namespace {
-std::unique_ptr<tbb::global_control> limit;
 int requested_threads = 0;           // 0: one for each core
 thread_local int serial_scopes = 0;  // number of living SerialScopes of this thread
 }  // namespace
@@ -25,23 +16,15 @@ SerialScope::~SerialScope() { --serial_scopes; }
 
 void set_threads(int count) {
   requested_threads = count > 0 ? count : 0;
-  limit.reset();
-  if (requested_threads > 0)
-    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                  static_cast<std::size_t>(requested_threads));
+  limit_machine_threads(requested_threads);
 }
 
-int threads() { return requested_threads > 0 ? requested_threads : tbb::info::default_concurrency(); }
+int threads() { return requested_threads > 0 ? requested_threads : machine_threads(); }
 
 void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
   if (count == 0) return;
   if (threads() == 1 || serial_scopes > 0 || count <= grain) return body(0, count);
-#ifdef KERF_SANITIZE_THREADS
-  parallel_for_by_threads(threads(), count, grain, body);
-#else
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                    [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
-#endif
+  run_loop(threads(), count, grain, body);
 }
 
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
@@ -59,11 +42,8 @@ void parallel_invoke(const std::function<void()>& first, const std::function<voi
     guarded(0);
     guarded(1);
   } else {
-#ifdef KERF_SANITIZE_THREADS
-    parallel_for_by_threads(threads(), 2, 1, [&](std::size_t i, std::size_t) { guarded(i); });
-#else
-    tbb::parallel_invoke([&] { guarded(0); }, [&] { guarded(1); });
-#endif
+    run_pair(
+        threads(), [&] { guarded(0); }, [&] { guarded(1); });
   }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);

@@ -1,5 +1,5 @@
-// The parallel primitives by threads of the standard library instead of oneTBB. The thread
-// sanitizer sees how these begin and end, and oneTBB's it does not.
+// Loops by threads of the standard library, in a build without oneTBB, and under the thread
+// sanitizer. It sees how these begin and end, and oneTBB's it does not.
 #pragma once
 
 #include <cstddef>

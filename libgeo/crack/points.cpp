@@ -1,12 +1,12 @@
-// Floating-point filters with error bounds, and GMP where they fail: exact numbers are m · 2^e with
-// integer m, exact points homogeneous. ab crosses a plane at (b d_a − a d_b) / (d_a − d_b); d_a
-// and d_b are the signed distances of a and b, times |normal|.
-#include <gmpxx.h>
+// Floating-point filters with error bounds, and whole numbers of any size where they fail: exact
+// numbers are m · 2^e with whole m, exact points homogeneous. ab crosses a plane at (b d_a − a d_b)
+// / (d_a − d_b); d_a and d_b are the signed distances of a and b, times |normal|.
+#include "crack/points.h"
 
 #include <bit>
 #include <cmath>
 
-#include "crack/points.h"
+#include "crack/whole_number.h"
 #include "geometry/predicates.h"
 
 namespace geo::crack {
@@ -14,7 +14,7 @@ namespace {
 
 // m · 2^e: sums and products of doubles without rounding and without fractions.
 struct Dyadic {
-  mpz_class m;
+  Whole m = 0;
   long e = 0;
   Dyadic() = default;
   explicit Dyadic(double x) {
@@ -22,7 +22,7 @@ struct Dyadic {
     int power = 0;
     const auto whole = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &power), 53));
     const int zeros = std::countr_zero(static_cast<std::uint64_t>(whole));  // many in numbers that were floats
-    m = static_cast<double>(whole >> zeros);
+    m = whole >> zeros;
     e = power - 53 + zeros;
   }
 };
@@ -33,12 +33,12 @@ Dyadic operator*(const Dyadic& a, const Dyadic& b) {
   return c;
 }
 Dyadic sum(const Dyadic& a, const Dyadic& b, bool minus) {
-  if (sgn(b.m) == 0) return a;
+  if (sign(b.m) == 0) return a;
   Dyadic c;
   c.e = std::min(a.e, b.e);
-  if (sgn(a.m) == 0) c.e = b.e;
-  const mpz_class x = sgn(a.m) == 0 ? mpz_class(0) : mpz_class(a.m << static_cast<mp_bitcnt_t>(a.e - c.e));
-  const mpz_class y = b.m << static_cast<mp_bitcnt_t>(b.e - c.e);
+  if (sign(a.m) == 0) c.e = b.e;
+  const Whole x = sign(a.m) == 0 ? Whole(0) : shifted(a.m, a.e - c.e);
+  const Whole y = shifted(b.m, b.e - c.e);
   if (minus)
     c.m = x - y;
   else
@@ -47,7 +47,7 @@ Dyadic sum(const Dyadic& a, const Dyadic& b, bool minus) {
 }
 Dyadic operator+(const Dyadic& a, const Dyadic& b) { return sum(a, b, false); }
 Dyadic operator-(const Dyadic& a, const Dyadic& b) { return sum(a, b, true); }
-int sign(const Dyadic& a) { return sgn(a.m); }
+int sign(const Dyadic& a) { return sign(a.m); }
 
 using ExactVec = std::array<Dyadic, 3>;
 
@@ -63,42 +63,22 @@ struct Rounded {
   bool exact;
 };
 
-// By fractions, where the quotient is too small or too large for the bits of a normal double.
-Rounded round_fraction(const Dyadic& a, const Dyadic& b) {
-  mpz_class up = a.m, down = b.m;
-  if (a.e > b.e)
-    up <<= static_cast<mp_bitcnt_t>(a.e - b.e);
-  else
-    down <<= static_cast<mp_bitcnt_t>(b.e - a.e);
-  mpq_class x(up, down);
-  x.canonicalize();
-  const double inner = x.get_d();  // rounded towards zero
-  const mpq_class rest = abs(x - mpq_class(inner));
-  if (rest == 0) return {inner, true};
-  const double outer = std::nextafter(inner, sgn(x) > 0 ? HUGE_VAL : -HUGE_VAL);
-  return {abs(mpq_class(outer) - x) < rest ? outer : inner, false};
-}
-
-// a / b for b > 0. One division of integers gives 62 or 63 bits and whether there are more: far
-// cheaper than a fraction in lowest terms.
+// a / b for b > 0. One division gives 62 or 63 bits and whether there are more. Below the smallest
+// normal number a double has fewer than 53 of them.
 Rounded round_quotient(const Dyadic& a, const Dyadic& b) {
   if (sign(a) == 0) return {0.0, true};
-  const auto bits = [](const mpz_class& m) { return static_cast<long>(mpz_sizeinbase(m.get_mpz_t(), 2)); };
-  const long shift = 62 - bits(a.m) + bits(b.m), exponent = a.e - b.e - shift;
-  if (exponent < -1000 || exponent > 900) return round_fraction(a, b);
-  mpz_class up = abs(a.m), down = b.m, whole, rest;
-  if (shift > 0)
-    up <<= static_cast<mp_bitcnt_t>(shift);
-  else
-    down <<= static_cast<mp_bitcnt_t>(-shift);
-  mpz_tdiv_qr(whole.get_mpz_t(), rest.get_mpz_t(), up.get_mpz_t(), down.get_mpz_t());
-  static_assert(sizeof(unsigned long) == 8);
-  const std::uint64_t q = whole.get_ui();
-  const int dropped = std::bit_width(q) - 53;
+  const long shift = 62 - bit_length(a.m) + bit_length(b.m), exponent = a.e - b.e - shift;
+  const Whole up = sign(a) > 0 ? a.m : Whole(-a.m);
+  Whole whole, rest;
+  divide(shifted(up, std::max(shift, 0l)), shifted(b.m, std::max(-shift, 0l)), whole, rest);
+  const std::uint64_t q = small(whole);
+  constexpr long last_bit = -1074;  // the smallest double is 2^last_bit
+  const long dropped = std::max<long>(std::bit_width(q) - 53, last_bit - exponent);
+  if (dropped > 63) return {0.0, false};  // q < 2⁶³: less than half of the smallest double
   const std::uint64_t low = q & ((std::uint64_t(1) << dropped) - 1), half = std::uint64_t(1) << (dropped - 1);
-  const bool more = sgn(rest) != 0, outwards = low > half || (low == half && more);
-  const double value = std::ldexp(static_cast<double>((q >> dropped) + outwards), static_cast<int>(exponent) + dropped);
-  return {sgn(a.m) > 0 ? value : -value, low == 0 && !more};
+  const bool more = sign(rest) != 0, outwards = low > half || (low == half && more);
+  const double value = std::ldexp(static_cast<double>((q >> dropped) + outwards), static_cast<int>(exponent + dropped));
+  return {sign(a) > 0 ? value : -value, low == 0 && !more};
 }
 
 // Filters hold where products neither underflow nor overflow; other values are computed exactly.
@@ -119,8 +99,8 @@ struct Points::Exact {
   }
   void keep_positive() {
     if (sign(w) > 0) return;
-    w.m = -w.m;
-    for (auto& x : p) x.m = -x.m;
+    w.m = Whole(-w.m);
+    for (auto& x : p) x.m = Whole(-x.m);
   }
 };
 

@@ -14,6 +14,7 @@
 
 #include "io/assimp_files.h"
 #include "io/shown.h"
+#include "io/surface_assimp.h"
 #include "io/surface_formats.h"
 #include "kerf/error.h"
 

@@ -9,8 +9,6 @@ namespace geo {
 
 /// Loads the library. Throws InputError, which says what to install.
 void load_assimp();
-/// Whether assimp has a reader for an ending, without the dot; false where the library is missing.
-bool assimp_reads(const std::string& ending);
 
 /// Reads bytes of the format that `ending` stands for. `name`: of the file, whose folder holds what
 /// it names. To be called in a child process: damaged files crash assimp. Throws InputError with

@@ -2,8 +2,6 @@
 // (docs/formats.md).
 #pragma once
 
-#include <xxhash.h>
-
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -11,6 +9,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "kerf/files.h"
 
 namespace geo::kerf {
 
@@ -24,7 +24,9 @@ constexpr std::uint64_t literal = ~std::uint64_t(0);  ///< `from` of a run whose
 constexpr std::uint64_t aligned(std::uint64_t at) { return (at + alignment - 1) / alignment * alignment; }
 
 /// XXH3 hash of some bytes.
-inline std::uint64_t hash_of(const void* bytes, std::size_t size) { return XXH3_64bits(bytes, size); }
+inline std::uint64_t hash_of(const void* bytes, std::size_t size) {
+  return fingerprint({static_cast<const char*>(bytes), size});
+}
 
 /// Hash of a section from the hashes of its blocks, which several threads compute.
 inline std::uint64_t hash_of(const std::vector<std::uint64_t>& blocks) {

@@ -63,7 +63,7 @@ PointCloud cloud_of(const Columns& columns, const std::string& name, bool byte_c
   return cloud;
 }
 
-PointCloud from_ply(const std::string& bytes, const std::string& name) {
+PointCloud cloud_of_ply(const std::string& bytes, const std::string& name) {
   const Ply ply = parse_ply(bytes, name);
   const PlyElement* vertex = ply.find("vertex");
   if (!vertex) throw InputError(name + ": has no vertices; give a scan");
@@ -229,7 +229,7 @@ Columns pcd_binary(std::string_view data, const PcdScan& scan, bool by_field, co
   return columns;
 }
 
-PointCloud from_pcd(const std::string& bytes, const std::string& name) {
+PointCloud cloud_of_pcd(const std::string& bytes, const std::string& name) {
   const PcdScan scan = pcd_header(bytes, name);
   const std::string_view data = std::string_view(bytes).substr(scan.begin);
   Columns columns;
@@ -315,8 +315,8 @@ bool holds_points(const std::string& bytes, const std::string& name) {
 }
 
 PointCloud parse_points(const std::string& bytes, const std::string& name) {
-  if (looks_like_pcd(bytes)) return from_pcd(bytes, name);
-  return bytes.starts_with("ply") ? from_ply(bytes, name) : from_text(bytes, name);
+  if (looks_like_pcd(bytes)) return cloud_of_pcd(bytes, name);
+  return bytes.starts_with("ply") ? cloud_of_ply(bytes, name) : from_text(bytes, name);
 }
 
 PointCloud read_points(const std::string& path) { return parse_points(read_all(path), path); }

@@ -5,7 +5,6 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -104,8 +103,6 @@ void discard_temporary_outputs() {
   temporaries().mutex.lock();  // never unlocked: nothing is committed from here on
   for (const auto& path : temporaries().paths) remove_quietly(path);
 }
-
-std::uint64_t fingerprint(std::string_view bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 std::string read_all(const std::string& path) {
   if (path.empty()) throw MissingInputError("the name of an input file is empty; give a file, or - for standard input");

@@ -1,5 +1,5 @@
-// printf() rounds to the nearest decimal of a given length, so the first length whose decimal is read
-// back as the number is the shortest.
+// printf() rounds to the nearest decimal of a given length, so the first length whose decimal is
+// read back as the number is the shortest.
 #include "base/number_text.h"
 
 #include <algorithm>

@@ -32,9 +32,11 @@ inline NumberEnd read_number(const char* begin, const char* end, double& value) 
 /// Writes the shortest text from which a number returns, 32 characters at most; returns its end.
 inline char* write_number(char* begin, auto value) { return std::to_chars(begin, begin + 32, value).ptr; }
 #else
+/// Reads a number from the beginning of a text, as std::from_chars().
 inline NumberEnd read_number(const char* begin, const char* end, double& value) {
   return read_by_strtod(begin, end, value);
 }
+/// Writes the shortest text from which a number returns, 32 characters at most; returns its end.
 template <class Number>
 char* write_number(char* begin, Number value) {
   if constexpr (std::is_integral_v<Number>)

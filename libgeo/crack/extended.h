@@ -7,9 +7,9 @@
 
 namespace geo::crack {
 
-/// A number ± m · 2^e with 64 bits. Each operation rounds to the nearest, ties to even. The exponent
-/// has 32 bits: finite doubles and short products of them neither overflow nor underflow. There is
-/// one zero.
+/// A number ± m · 2^e with 64 bits. Each operation rounds to the nearest, ties to even. The
+/// exponent has 32 bits: finite doubles and short products of them neither overflow nor underflow.
+/// There is one zero.
 class SoftExtended {
  public:
   /// Zero.
@@ -19,9 +19,10 @@ class SoftExtended {
   /// The nearest double, ties to even.
   explicit operator double() const;
 
-  /// Sum, difference, product and quotient, rounded; a divisor is not zero.
-  friend SoftExtended operator+(const SoftExtended& a, const SoftExtended& b);
+  /// The difference, rounded.
   friend SoftExtended operator-(const SoftExtended& a, const SoftExtended& b) { return a + -b; }
+  /// Sum, product and quotient, rounded; a divisor is not zero.
+  friend SoftExtended operator+(const SoftExtended& a, const SoftExtended& b);
   friend SoftExtended operator*(const SoftExtended& a, const SoftExtended& b);
   friend SoftExtended operator/(const SoftExtended& a, const SoftExtended& b);
   /// The number of the other sign.
@@ -34,7 +35,7 @@ class SoftExtended {
     return difference.m_ != 0 && !difference.negative_;
   }
   /// The absolute value.
-  friend SoftExtended abs(const SoftExtended& a) { return {false, a.m_, a.e_}; }
+  SoftExtended magnitude() const { return {false, m_, e_}; }
 
  private:
   SoftExtended(bool negative, std::uint64_t m, std::int32_t e) : m_(m), e_(e), negative_(negative) {}
@@ -44,6 +45,9 @@ class SoftExtended {
   std::int32_t e_ = 0;
   bool negative_ = false;
 };
+
+/// The absolute value.
+inline SoftExtended abs(const SoftExtended& a) { return a.magnitude(); }
 
 #if LDBL_MANT_DIG == 64
 using Extended = long double;

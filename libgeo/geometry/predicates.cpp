@@ -1,5 +1,6 @@
 // Filtered orientations decide most cases (error bounds: Shewchuk 1997). Triangle pairs follow
-// Guigue and Devillers (2003). Degenerate and undecided cases go to CGAL's exact kernel.
+// Guigue and Devillers (2003). Orientations that a filter leaves open are signs of expansions
+// (geometry/expansion.h); degenerate triangles and numbers out of range go to CGAL's exact kernel.
 #include "geometry/predicates.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 
 #include "geometry/coordinate_order.h"
+#include "geometry/expansion.h"
 
 namespace geo {
 namespace {
@@ -33,17 +35,53 @@ bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   return CGAL::do_intersect(Kernel::Segment_3(pt(p), pt(q)), Kernel::Segment_3(pt(r), pt(s)));
 }
 
+// Whether products of three differences of such coordinates are exact as expansions: their last
+// bits are at least (2⁻¹⁵⁰ · 2⁻⁵²)³ = 2⁻⁶⁰⁶, their sums below 6 · (2³⁰¹)³.
+bool fits_expansions(const Vec3& p) {
+  for (int i = 0; i < 3; ++i) {
+    const double size = std::abs(p[i]);
+    if (size != 0 && !(size > 0x1p-150 && size < 0x1p300)) return false;
+  }
+  return true;
+}
+
+using Difference = Expansion<2>;
+
+int orient2d_by_expansions(const Vec3& a, const Vec3& b, const Vec3& c, int i, int j) {
+  const auto left = Difference::difference(a[i], c[i]) * Difference::difference(b[j], c[j]);
+  const auto right = Difference::difference(a[j], c[j]) * Difference::difference(b[i], c[i]);
+  return (left - right).sign();
+}
+
+int orient3d_by_expansions(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  Difference u[3], v[3], w[3];
+  for (int i = 0; i < 3; ++i) {
+    u[i] = Difference::difference(b[i], a[i]);
+    v[i] = Difference::difference(c[i], a[i]);
+    w[i] = Difference::difference(d[i], a[i]);
+  }
+  const auto term = [&](int i, int j, int k) { return (u[i] * v[j] - u[j] * v[i]) * w[k]; };
+  return (term(0, 1, 2) + term(1, 2, 0) + term(2, 0, 1)).sign();
+}
+
+// The orientation in the plane of two coordinates.
+int orient_projected(const Vec3& a, const Vec3& b, const Vec3& c, int i, int j) {
+  if (fits_expansions(a) && fits_expansions(b) && fits_expansions(c)) return orient2d_by_expansions(a, b, c, i, j);
+  return static_cast<int>(
+      CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
+}
+
 }  // namespace
 
 int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  if (fits_expansions(a) && fits_expansions(b) && fits_expansions(c) && fits_expansions(d))
+    return orient3d_by_expansions(a, b, c, d);
   return static_cast<int>(CGAL::orientation(pt(a), pt(b), pt(c), pt(d)));
 }
 
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   const int sign = orient2d_filtered(a, b, c, axis), i = (axis + 1) % 3, j = (axis + 2) % 3;
-  if (sign != 2) return sign;
-  return static_cast<int>(
-      CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
+  return sign != 2 ? sign : orient_projected(a, b, c, i, j);
 }
 
 std::pair<int, int> projection_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -66,11 +104,17 @@ bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double x = u[j] * v[k], y = u[k] * v[j], permanent = std::abs(x) + std::abs(y);
     if (permanent > filter_smallest && permanent < filter_largest && std::abs(x - y) > 5e-16 * permanent) return false;
   }
-  return CGAL::collinear(pt(a), pt(b), pt(c));
+  return orient_projected(a, b, c, 0, 1) == 0 && orient_projected(a, b, c, 1, 2) == 0 &&
+         orient_projected(a, b, c, 2, 0) == 0;
 }
 
 int coplanar_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  return static_cast<int>(CGAL::coplanar_orientation(pt(a), pt(b), pt(c), pt(d)));
+  // In a projection in which abc has an area.
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    if (const int turn = orient_projected(a, b, c, i, j); turn != 0) return turn * orient_projected(a, b, d, i, j);
+  }
+  return 0;
 }
 
 bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]) {

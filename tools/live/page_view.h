@@ -1,4 +1,4 @@
-// What a page has been sent, and what is sent to it next: docs/live-protocol.md.
+// The messages to a page, by what it has been sent and has shown: docs/live-protocol.md.
 #pragma once
 
 #include <cstdint>

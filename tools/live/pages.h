@@ -1,5 +1,5 @@
-// The pages that show a run, as the simulation sees them: WebSockets of a server, or the page around
-// a worker.
+// The pages that show a run, as the simulation sees them: WebSockets of a server, or the page
+// around a worker.
 #pragma once
 
 #include <cstdint>

@@ -4,17 +4,15 @@ list(PREPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/Open
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(hwy 1.0 REQUIRED)
-set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)
-set(CGAL_DATA_DIR "unused" CACHE PATH "")
-if(KERF_CORE)
-  set(CGAL_DISABLE_GMP ON)  # Boost.Multiprecision in its place
-endif()
-find_package(CGAL 5.5 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 # Headers alone: one source compiles what others load as a library (io/toml_library.cpp, io/fingerprint.cpp).
 find_path(KERF_TOML toml++/toml.h REQUIRED)
 find_path(KERF_XXHASH xxhash.h REQUIRED)
+find_path(KERF_MULTIPRECISION boost/multiprecision/cpp_int.hpp REQUIRED)
 if(KERF_FULL)
+  set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)
+  set(CGAL_DATA_DIR "unused" CACHE PATH "")
+  find_package(CGAL 5.5 REQUIRED)
   find_package(TBB REQUIRED)
   find_package(PCL 1.13 REQUIRED COMPONENTS common kdtree)
   find_library(KERF_PCL_IO pcl_io REQUIRED)
@@ -42,14 +40,8 @@ endif()
 add_library(kerf_eigen INTERFACE)
 target_link_libraries(kerf_eigen INTERFACE Eigen3::Eigen)
 
-add_library(kerf_cgal INTERFACE)
-target_link_libraries(kerf_cgal INTERFACE CGAL::CGAL)
-
-# CGAL's headers, with Boost.Multiprecision in the place of GMP and MPFR.
-add_library(kerf_cgal_core INTERFACE)
-target_include_directories(kerf_cgal_core SYSTEM INTERFACE $<TARGET_PROPERTY:CGAL::CGAL,INTERFACE_INCLUDE_DIRECTORIES>)
-target_compile_definitions(kerf_cgal_core INTERFACE CGAL_DISABLE_GMP=1)
-target_compile_options(kerf_cgal_core INTERFACE $<$<CXX_COMPILER_ID:GNU>:-frounding-math>)
+add_library(kerf_integers INTERFACE)
+target_include_directories(kerf_integers SYSTEM INTERFACE ${KERF_MULTIPRECISION})
 
 add_library(kerf_formats INTERFACE)
 target_link_libraries(kerf_formats INTERFACE nlohmann_json::nlohmann_json)
@@ -57,6 +49,9 @@ target_include_directories(kerf_formats SYSTEM INTERFACE ${KERF_TOML} ${KERF_XXH
 target_compile_definitions(kerf_formats INTERFACE TOML_HEADER_ONLY=0)
 
 if(KERF_FULL)
+  add_library(kerf_cgal INTERFACE)
+  target_link_libraries(kerf_cgal INTERFACE CGAL::CGAL)
+
   # Headers alone: the library is opened when a file needs it, under the name that belongs to these headers.
   add_library(kerf_assimp INTERFACE)
   get_target_property(KERF_ASSIMP_INCLUDE assimp::assimp INTERFACE_INCLUDE_DIRECTORIES)

@@ -35,11 +35,11 @@ Dyadic operator*(const Dyadic& a, const Dyadic& b) {
   return c;
 }
 Dyadic sum(const Dyadic& a, const Dyadic& b, bool minus) {
-  if (sign(b.m) == 0) return a;
+  if (sign_of(b.m) == 0) return a;
   Dyadic c;
   c.e = std::min(a.e, b.e);
-  if (sign(a.m) == 0) c.e = b.e;
-  const Whole x = sign(a.m) == 0 ? Whole(0) : shifted(a.m, a.e - c.e);
+  if (sign_of(a.m) == 0) c.e = b.e;
+  const Whole x = sign_of(a.m) == 0 ? Whole(0) : shifted(a.m, a.e - c.e);
   const Whole y = shifted(b.m, b.e - c.e);
   if (minus)
     c.m = x - y;
@@ -49,7 +49,7 @@ Dyadic sum(const Dyadic& a, const Dyadic& b, bool minus) {
 }
 Dyadic operator+(const Dyadic& a, const Dyadic& b) { return sum(a, b, false); }
 Dyadic operator-(const Dyadic& a, const Dyadic& b) { return sum(a, b, true); }
-int sign(const Dyadic& a) { return sign(a.m); }
+int sign(const Dyadic& a) { return sign_of(a.m); }
 
 using ExactVec = std::array<Dyadic, 3>;
 
@@ -78,7 +78,7 @@ Rounded round_quotient(const Dyadic& a, const Dyadic& b) {
   const long dropped = std::max<long>(std::bit_width(q) - 53, last_bit - exponent);
   if (dropped > 63) return {0.0, false};  // q < 2⁶³: less than half of the smallest double
   const std::uint64_t low = q & ((std::uint64_t(1) << dropped) - 1), half = std::uint64_t(1) << (dropped - 1);
-  const bool more = sign(rest) != 0, outwards = low > half || (low == half && more);
+  const bool more = sign_of(rest) != 0, outwards = low > half || (low == half && more);
   const double value = std::ldexp(static_cast<double>((q >> dropped) + outwards), static_cast<int>(exponent + dropped));
   return {sign(a) > 0 ? value : -value, low == 0 && !more};
 }

@@ -21,7 +21,7 @@ using WholeBackend = boost::multiprecision::cpp_int_backend<512, 0, boost::multi
 using Whole = boost::multiprecision::number<WholeBackend, boost::multiprecision::et_off>;
 
 /// −1, 0 or 1.
-inline int sign(const Whole& x) { return x.sign(); }
+inline int sign_of(const Whole& x) { return x.sign(); }
 /// Number of bits of |x|. Precondition: x is not 0.
 inline long bit_length(const Whole& x) { return static_cast<long>(boost::multiprecision::msb(abs(x))) + 1; }
 /// x · 2^by.
@@ -39,7 +39,7 @@ using Whole = mpz_class;
 static_assert(sizeof(long) == 8);
 
 /// −1, 0 or 1.
-inline int sign(const Whole& x) { return sgn(x); }
+inline int sign_of(const Whole& x) { return sgn(x); }
 /// Number of bits of |x|. Precondition: x is not 0.
 inline long bit_length(const Whole& x) { return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2)); }
 /// x · 2^by.

@@ -1,25 +1,19 @@
 // Filtered orientations decide most cases (error bounds: Shewchuk 1997). Triangle pairs follow
-// Guigue and Devillers (2003). Orientations that a filter leaves open are signs of expansions
-// (geometry/expansion.h); degenerate triangles and numbers out of range go to CGAL's exact kernel.
+// Guigue and Devillers (2003). Degenerate and undecided cases go to geometry/exact_predicates.h:
+// KERF_EXACT is the set of the edition.
 #include "geometry/predicates.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Exact_rational.h>
-#include <CGAL/intersections.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/coordinate_order.h"
-#include "geometry/expansion.h"
+#include "geometry/exact_predicates.h"
 
 namespace geo {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-
-Point pt(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+const ExactPredicates& exact = KERF_EXACT;
 
 bool same(const Vec3& a, const Vec3& b) { return a == b; }
 
@@ -30,58 +24,88 @@ std::pair<Vec3, Vec3> as_segment(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 bool segments_meet(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
   if (same(p, q) && same(r, s)) return same(p, r);
-  if (same(p, q)) return Kernel::Segment_3(pt(r), pt(s)).has_on(pt(p));
-  if (same(r, s)) return Kernel::Segment_3(pt(p), pt(q)).has_on(pt(r));
-  return CGAL::do_intersect(Kernel::Segment_3(pt(p), pt(q)), Kernel::Segment_3(pt(r), pt(s)));
+  if (same(p, q)) return exact.on_segment(r, s, p);
+  if (same(r, s)) return exact.on_segment(p, q, r);
+  return exact.segments_meet(p, q, r, s);
 }
 
-// Whether products of three differences of such coordinates are exact as expansions: their last
-// bits are at least (2⁻¹⁵⁰ · 2⁻⁵²)³ = 2⁻⁶⁰⁶, their sums below 6 · (2³⁰¹)³.
-bool fits_expansions(const Vec3& p) {
+// An unevaluated sum of two doubles, the second at most half an ulp of the first (Dekker).
+struct Pair {
+  double high, low;
+};
+
+Pair sum_of(double a, double b) {
+  const double s = a + b, t = s - a;
+  return {s, (a - (s - t)) + (b - t)};
+}
+// As sum_of(), for |a| ≥ |b|.
+Pair ordered_sum_of(double a, double b) {
+  const double s = a + b;
+  return {s, b - (s - a)};
+}
+Pair product_of(double a, double b) {
+  constexpr double splitter = 0x1p27 + 1;
+  const double p = a * b;
+  const double x = splitter * a, ah = x - (x - a), al = a - ah;
+  const double y = splitter * b, bh = y - (y - b), bl = b - bh;
+  return {p, ((ah * bh - p) + ah * bl + al * bh) + al * bl};
+}
+Pair operator-(const Pair& a) { return {-a.high, -a.low}; }
+Pair operator+(const Pair& a, const Pair& b) {
+  const Pair s = sum_of(a.high, b.high), t = sum_of(a.low, b.low);
+  const Pair u = ordered_sum_of(s.high, s.low + t.high);
+  return ordered_sum_of(u.high, u.low + t.low);
+}
+Pair operator*(const Pair& a, const Pair& b) {
+  const Pair p = product_of(a.high, b.high);
+  return ordered_sum_of(p.high, p.low + (a.high * b.low + a.low * b.high));
+}
+
+// orient3d() in about 100 bits, for points that are coplanar but for their rounding; 2: undecided.
+int orient3d_in_pairs(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  std::array<Pair, 3> u, v, w;
+  double largest = 0;
   for (int i = 0; i < 3; ++i) {
-    const double size = std::abs(p[i]);
-    if (size != 0 && !(size > 0x1p-150 && size < 0x1p300)) return false;
+    u[i] = sum_of(a[i], -d[i]);
+    v[i] = sum_of(b[i], -d[i]);
+    w[i] = sum_of(c[i], -d[i]);
+    largest = std::max({largest, std::abs(u[i].high), std::abs(v[i].high), std::abs(w[i].high)});
   }
-  return true;
-}
-
-using Difference = Expansion<2>;
-
-int orient2d_by_expansions(const Vec3& a, const Vec3& b, const Vec3& c, int i, int j) {
-  const auto left = Difference::difference(a[i], c[i]) * Difference::difference(b[j], c[j]);
-  const auto right = Difference::difference(a[j], c[j]) * Difference::difference(b[i], c[i]);
-  return (left - right).sign();
-}
-
-int orient3d_by_expansions(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  Difference u[3], v[3], w[3];
+  Pair det{0, 0};
+  double permanent = 0;
   for (int i = 0; i < 3; ++i) {
-    u[i] = Difference::difference(b[i], a[i]);
-    v[i] = Difference::difference(c[i], a[i]);
-    w[i] = Difference::difference(d[i], a[i]);
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const Pair left = v[j] * w[k], right = v[k] * w[j];
+    det = det + u[i] * (left + -right);
+    permanent += std::abs(u[i].high) * (std::abs(left.high) + std::abs(right.high));
   }
-  const auto term = [&](int i, int j, int k) { return (u[i] * v[j] - u[j] * v[i]) * w[k]; };
-  return (term(0, 1, 2) + term(1, 2, 0) + term(2, 0, 1)).sign();
-}
-
-// The orientation in the plane of two coordinates.
-int orient_projected(const Vec3& a, const Vec3& b, const Vec3& c, int i, int j) {
-  if (fits_expansions(a) && fits_expansions(b) && fits_expansions(c)) return orient2d_by_expansions(a, b, c, i, j);
-  return static_cast<int>(
-      CGAL::orientation(Kernel::Point_2(a[i], a[j]), Kernel::Point_2(b[i], b[j]), Kernel::Point_2(c[i], c[j])));
+  // With ε = 2⁻⁵³, a product of pairs is off by at most 7 ε² of its size, a sum by 3 ε² of those of
+  // its terms (Joldes et al. 2017). Each term of the determinant passes through two products and
+  // four sums: 26 ε². The bound, 64 ε², covers higher orders and the rounding of the permanent.
+  // Underflow is smaller by far for permanents and factors of this size.
+  const double bound = 0x1p-100 * permanent;
+  if (!(permanent > 1e-150 && largest < 1e50)) return 2;
+  return det.high > bound ? -1 : det.high < -bound ? 1 : 2;
 }
 
 }  // namespace
 
+int orient3d_refined(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  for (int i = 0; i < 3; ++i)
+    if (a[i] == b[i] && a[i] == c[i] && a[i] == d[i]) return 0;
+  if (a == d || b == d || c == d || a == b || b == c || c == a) return 0;
+  return orient3d_in_pairs(a, b, c, d);
+}
+
 int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  if (fits_expansions(a) && fits_expansions(b) && fits_expansions(c) && fits_expansions(d))
-    return orient3d_by_expansions(a, b, c, d);
-  return static_cast<int>(CGAL::orientation(pt(a), pt(b), pt(c), pt(d)));
+  const int sign = orient3d_refined(a, b, c, d);
+  return sign != 2 ? sign : exact.orient3d(a, b, c, d);
 }
 
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   const int sign = orient2d_filtered(a, b, c, axis), i = (axis + 1) % 3, j = (axis + 2) % 3;
-  return sign != 2 ? sign : orient_projected(a, b, c, i, j);
+  if (sign != 2) return sign;
+  return exact.orient2d({a[i], a[j]}, {b[i], b[j]}, {c[i], c[j]});
 }
 
 std::pair<int, int> projection_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -104,17 +128,11 @@ bool collinear(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double x = u[j] * v[k], y = u[k] * v[j], permanent = std::abs(x) + std::abs(y);
     if (permanent > filter_smallest && permanent < filter_largest && std::abs(x - y) > 5e-16 * permanent) return false;
   }
-  return orient_projected(a, b, c, 0, 1) == 0 && orient_projected(a, b, c, 1, 2) == 0 &&
-         orient_projected(a, b, c, 2, 0) == 0;
+  return exact.collinear(a, b, c);
 }
 
 int coplanar_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  // In a projection in which abc has an area.
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3;
-    if (const int turn = orient_projected(a, b, c, i, j); turn != 0) return turn * orient_projected(a, b, d, i, j);
-  }
-  return 0;
+  return exact.coplanar_side(a, b, c, d);
 }
 
 bool share_corners_only(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
@@ -155,9 +173,7 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const V
     const auto [u, v] = as_segment(a, b, c);
     return segments_meet(p, q, u, v);
   }
-  const Kernel::Triangle_3 triangle(pt(a), pt(b), pt(c));
-  if (same(p, q)) return triangle.has_on(pt(p));
-  return CGAL::do_intersect(Kernel::Segment_3(pt(p), pt(q)), triangle);
+  return same(p, q) ? exact.on_triangle(a, b, c, p) : exact.segment_meets_triangle(p, q, a, b, c);
 }
 
 bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
@@ -197,8 +213,7 @@ bool triangles_meet(const Vec3 (&s)[3], const Vec3 (&t)[3]) {
     const auto [u, v] = as_segment(t[0], t[1], t[2]);
     return segment_meets_triangle(u, v, s[0], s[1], s[2]);
   }
-  return CGAL::do_intersect(Kernel::Triangle_3(pt(s[0]), pt(s[1]), pt(s[2])),
-                            Kernel::Triangle_3(pt(t[0]), pt(t[1]), pt(t[2])));
+  return exact.triangles_meet(s, t);
 }
 
 int compare_angle(const Vec3& u, const Vec3& v, const Vec3& zero, const Vec3& a, const Vec3& b) {
@@ -232,17 +247,7 @@ int volume_sign(std::span<const std::array<Vec3, 3>> triangles) {
   // of it.
   const double bound = 0x1p-52 * (double(triangles.size()) + 8) * permanent;
   if (permanent > filter_smallest && permanent < filter_largest && std::abs(sum) > bound) return sum > 0 ? 1 : -1;
-  using Exact = CGAL::Exact_rational;
-  Exact exact = 0;
-  const auto minus = [](const Vec3& p, const Vec3& q, int k) { return Exact(p[k]) - Exact(q[k]); };
-  for (const auto& corners : triangles) {
-    std::array<std::array<Exact, 3>, 3> m;
-    for (int row = 0; row < 3; ++row)
-      for (int k = 0; k < 3; ++k) m[row][k] = minus(corners[row], apex, k);
-    exact += m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) + m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
-             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  }
-  return static_cast<int>(CGAL::sign(exact));
+  return exact.volume_sign(triangles);
 }
 
 }  // namespace geo

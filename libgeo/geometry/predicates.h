@@ -1,5 +1,5 @@
-// Exact geometric predicates on doubles. A floating-point filter decides most cases; CGAL's exact
-// arithmetic decides the rest.
+// Exact geometric predicates on doubles. A floating-point filter decides most cases; exact
+// arithmetic decides the rest (geometry/exact_predicates.h).
 #pragma once
 
 #include <array>
@@ -43,6 +43,9 @@ inline int orient2d_filtered(const Vec3& a, const Vec3& b, const Vec3& c, int ax
   if (!(permanent > filter_smallest && permanent < filter_largest)) return 2;
   return det > bound ? 1 : det < -bound ? -1 : 2;
 }
+
+/// orient3d() in about a hundred bits, and where a coordinate or a point occurs twice; else 2.
+int orient3d_refined(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// orient3d() without a filter of its own.
 int orient3d_exact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);

@@ -1,4 +1,4 @@
-// fracture(), cut() and save() of kerf/jobs.h.
+// fracture(), cut(), pieces_of() and save() of kerf/jobs.h.
 #include <ostream>
 #include <span>
 
@@ -22,6 +22,15 @@ Complex complex_of(const TriangleMesh& model) {
   return model.two_sided() ? Complex::from_two_sided(model) : Complex::from_skin(model);
 }
 
+TriangleMesh sheet_of(const Front& front) {
+  TriangleMesh sheet;
+  sheet.vertices = front.steps[0];
+  sheet.triangles = front.triangles;
+  return sheet;
+}
+
+}  // namespace
+
 PieceSet pieces_of(const Complex& complex, const TriangleMesh& model) {
   const Pieces pieces = find_pieces(complex);
   PieceSet set;
@@ -31,15 +40,6 @@ PieceSet pieces_of(const Complex& complex, const TriangleMesh& model) {
   set.labels.names = piece_names(pieces.count);
   return set;
 }
-
-TriangleMesh sheet_of(const Front& front) {
-  TriangleMesh sheet;
-  sheet.vertices = front.steps[0];
-  sheet.triangles = front.triangles;
-  return sheet;
-}
-
-}  // namespace
 
 PieceSet fracture(const TriangleMesh& model, const ScoreOptions& options, const Progress& progress) {
   Complex complex = complex_of(model);

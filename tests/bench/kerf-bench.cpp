@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> frequencies, nodes;
   t.argument(
       "WHAT", what,
-      "crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its parts beside other "
+      "break: impacts at run time; crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its "
+      "parts beside other "
       "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; dataset: "
       "fractures for learning; live: "
       "kerf-live with a client that cuts; mechanics: "
@@ -28,20 +29,19 @@ int main(int argc, char** argv) {
            "Closed meshes to measure as well; live: these alone, each cut into a heap of pieces");
   return t.run(argc, argv, [&] {
     std::map<std::string, int (*)(const bench::Options&)> known{
-        {"crack", bench::crack},          {"block", bench::block},
-        {"graph", bench::graph},          {"concave", bench::concave},
-        {"contact", bench::contact},      {"mechanics", bench::mechanics},
-        {"dataset", bench::dataset},      {"live", bench::live},
-        {"score", bench::score},          {"validate", bench::validate},
-        {"simulation", bench::simulation}};
+        {"crack", bench::crack},       {"block", bench::block},     {"graph", bench::graph},
+        {"concave", bench::concave},   {"contact", bench::contact}, {"mechanics", bench::mechanics},
+        {"dataset", bench::dataset},   {"live", bench::live},       {"score", bench::score},
+        {"validate", bench::validate}, {"break", bench::impact},    {"simulation", bench::simulation}};
 #ifdef KERF_PYTHON_SCRIPT
     known["python"] = bench::python;
 #endif
     if (!known.count(what))
-      throw tool::UsageError("nothing is known about '" + what +
-                             "'; there are crack, block, graph, concave, contact, dataset, live, mechanics, score, "
-                             "simulation, validate and, with "
-                             "KERF_PYTHON, python");
+      throw tool::UsageError(
+          "nothing is known about '" + what +
+          "'; there are break, crack, block, graph, concave, contact, dataset, live, mechanics, score, "
+          "simulation, validate and, with "
+          "KERF_PYTHON, python");
     if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");
     for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));
     for (const int f : options.frequencies)

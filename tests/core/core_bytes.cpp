@@ -44,7 +44,7 @@ void print_fracture(const std::string& name, const TriangleMesh& model, Pattern 
   print_hash(title + " crack", written([&](std::ostream& out) { write_ply(out, complex.two_sided()); }));
   const PieceSet pieces = fracture(model, options);
   print_hash(title + " glb", written([&](std::ostream& out) {
-               write_glb(out, pieces.chunks, pieces.bonds, pieces.labels, {.hull_corners = 64, .hull_parts = 4});
+               write_glb(out, pieces.chunks, pieces.bonds, pieces.labels, {.hull_corners = 64, .hull_parts = 2});
              }));
   print_hash(title + " obj", written([&](std::ostream& out) { write_obj(out, pieces.chunks[0].mesh); }));
   print_hash(title + " off", written([&](std::ostream& out) { write_off(out, pieces.chunks[1].mesh); }));

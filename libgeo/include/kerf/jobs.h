@@ -58,6 +58,13 @@ PieceSet cut(const TriangleMesh& model, const TriangleMesh& sheet, const CrackOp
 PieceSet cut(const TriangleMesh& model, const Front& front, const CrackOptions& options = {},
              const Progress& progress = {});
 
+/// The pieces of a complex: find_pieces(), make_chunks() with a texture tile of a quarter of the
+/// diagonal on inner faces, and find_bonds().
+///
+/// \param model  the surface that `complex` was made from, for its attributes
+/// \return as fracture()
+PieceSet pieces_of(const Complex& complex, const TriangleMesh& model);
+
 /// Writes pieces, their bonds and convex hulls to a file for engines.
 ///
 /// \param path  ends with .glb (write_glb(), hulls of at most 64 corners) or .usda

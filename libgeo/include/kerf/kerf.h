@@ -13,6 +13,7 @@
 #include "kerf/glue.h"
 #include "kerf/graph.h"
 #include "kerf/hierarchy.h"
+#include "kerf/impact.h"
 #include "kerf/jobs.h"
 #include "kerf/material.h"
 #include "kerf/mesh.h"

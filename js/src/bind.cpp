@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include <kerf/parallel.h>
+
 namespace kerf_js {
 namespace {
 
@@ -113,5 +115,8 @@ geo::CrackOptions crack_options(const val& options) {
   take_seed(options, "seed", o.seed);
   return o;
 }
+
+// The modules have one thread.
+EMSCRIPTEN_BINDINGS(kerf_threads) { geo::set_threads(1); }
 
 }  // namespace kerf_js

@@ -6,7 +6,7 @@ target_compile_options(kerf_flags INTERFACE -Wall -Wextra $<$<CONFIG:Debug>:-O1>
 target_compile_options(kerf_flags INTERFACE -ffp-contract=off)
 # gcc 12 warns of impossible overlaps inside std::string at -O3 (its bug 105329).
 target_compile_options(kerf_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
-target_link_options(kerf_flags INTERFACE -Wl,--as-needed)
+target_link_options(kerf_flags INTERFACE $<$<NOT:$<PLATFORM_ID:Emscripten>>:-Wl,--as-needed>)
 # gcc 12 also warns of impossible lengths and bounds inside std::string (its bug 105651), and of types of anonymous
 # namespaces where sources are compiled as one. Targets that join many strings have these warnings off.
 function(kerf_quiet target)

@@ -348,8 +348,15 @@ std::string named_hash(const std::string& path, std::uint64_t fingerprint) {
 
 std::string number(double x) {
   char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, x).ptr;
-  return std::string(text, end);
+#ifdef __cpp_lib_to_chars
+  return std::string(text, std::to_chars(text, text + sizeof text, x).ptr);
+#else  // libc++ before 14
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, x);
+    if (std::strtod(text, nullptr) == x) break;
+  }
+  return text;
+#endif
 }
 
 std::string rounded(double x) {

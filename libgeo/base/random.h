@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/sine.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -30,7 +31,7 @@ class Random {
   /// Uniform on the unit sphere.
   Vec3 direction() {
     const double z = uniform(-1.0, 1.0), phi = uniform(0.0, 6.283185307179586), r = std::sqrt(1.0 - z * z);
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    return {r * cosine(phi), r * sine(phi), z};
   }
 
  private:

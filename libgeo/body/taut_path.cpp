@@ -237,7 +237,8 @@ class SupportedPath {
 
  private:
   void perturb(Support& support) {
-    support.at = support.aim + 4 * lowest_ * random_.uniform() * random_.direction();
+    const Vec3 direction = random_.direction();
+    support.at = support.aim + 4 * lowest_ * random_.uniform() * direction;
     support.height = lowest_ * std::exp2(8 * random_.uniform());
   }
 

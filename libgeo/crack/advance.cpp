@@ -240,7 +240,8 @@ Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>
 
 // Displaces a point by up to `jitter`.
 Vec3 displaced(const Vec3& p, double jitter, Random& random) {
-  return p + random.uniform(0.2, 1.0) * jitter * random.direction();
+  const Vec3 direction = random.direction();
+  return p + random.uniform(0.2, 1.0) * jitter * direction;
 }
 
 // Displaces the points of a front that has not made a step yet and its new position, for a repeated

@@ -318,7 +318,8 @@ Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext&
         if (v.value < complex.vertex_count() || !context.moved[v.value - complex.vertex_count()]) continue;
         const std::uint32_t i = v.value - complex.vertex_count();
         before.push_back({i, edit.new_vertices[i]});
-        edit.new_vertices[i] += distance * random.uniform(0.5, 1.0) * random.direction();
+        const Vec3 direction = random.direction();
+        edit.new_vertices[i] += distance * random.uniform(0.5, 1.0) * direction;
       }
     if (before.empty()) return fault;
     Fault now = find_fault(complex, edit, displaced);

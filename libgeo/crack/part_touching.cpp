@@ -220,7 +220,8 @@ void move_apart(TriangleMesh& mesh) {
     std::vector<std::uint32_t> moved;
     for (const auto m : motions_in(mesh, crossing.pairs(), motion_of)) {
       motions[m].length *= 0.5;
-      motions[m].inwards = (motions[m].inwards + random.uniform() * random.direction()).stableNormalized();
+      const Vec3 direction = random.direction();
+      motions[m].inwards = (motions[m].inwards + random.uniform() * direction).stableNormalized();
       move(motions[m]);
       moved.insert(moved.end(), triangles_at[m].begin(), triangles_at[m].end());
     }

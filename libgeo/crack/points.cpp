@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/bit_cast.h"
+#include "crack/extended.h"
 #include "crack/whole_number.h"
 #include "geometry/predicates.h"
 
@@ -119,7 +121,8 @@ PointIndex Points::add(Vec3 p) { return append(p, 0); }
 PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   // In extended precision the quotient is accurate to an ulp of a double, unless ab is nearly in
   // the plane.
-  using Long = long double;
+  using Long = Extended;
+  using std::abs;
   Long u[3], v[3], wa[3], wb[3];
   for (int i = 0; i < 3; ++i) {
     u[i] = Long(q[i]) - p[i];
@@ -130,18 +133,18 @@ PointIndex Points::add_crossing(Vec3 a, Vec3 b, Vec3 p, Vec3 q, Vec3 r) {
   Long da = 0, db = 0, size_a = 0, size_b = 0;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const Long x = u[j] * v[k], y = u[k] * v[j], n = x - y, m = std::abs(x) + std::abs(y);
+    const Long x = u[j] * v[k], y = u[k] * v[j], n = x - y, m = abs(x) + abs(y);
     da += n * wa[i];
     db += n * wb[i];
-    size_a += m * std::abs(wa[i]);
-    size_b += m * std::abs(wb[i]);
+    size_a += m * abs(wa[i]);
+    size_b += m * abs(wb[i]);
   }
   // t = d_a / (d_a − d_b), d_x = (q − p) × (r − p) · (x − p). Each term of d passes through at most
   // 12 roundings of 2⁻⁶⁴; the error of t follows from those of d_a and d_b.
-  constexpr Long unit = 0x1p-64L;
-  const Long error_a = 12 * unit * size_a, error_b = 12 * unit * size_b, whole = std::abs(da - db);
-  const Long t = whole > 0 ? da / (da - db) : 0.5L;
-  const Long error_t = whole > 0 ? 2 * (error_a + error_b) / whole + 4 * unit : 1;
+  const Long unit = 0x1p-64;
+  const Long error_a = 12 * unit * size_a, error_b = 12 * unit * size_b, whole = abs(da - db);
+  const Long t = whole > 0 ? da / (da - db) : Long(0.5);
+  const Long error_t = whole > 0 ? 2 * (error_a + error_b) / whole + 4 * unit : Long(1);
   Vec3 x;
   double size = 0, length = 0;
   for (int i = 0; i < 3; ++i) {
@@ -274,7 +277,7 @@ std::uint64_t Points::hash(PointIndex l) const {
 std::uint64_t hash_of(const Vec3& p) {
   std::uint64_t h = 1469598103934665603ull;
   for (int i = 0; i < 3; ++i) {
-    h = (h ^ std::bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: −0 becomes 0
+    h = (h ^ bit_cast<std::uint64_t>(p[i] + 0.0)) * 1099511628211ull;  // + 0.0: −0 becomes 0
     h ^= h >> 29;
   }
   return h;

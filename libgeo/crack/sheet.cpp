@@ -50,7 +50,10 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
     Stopwatch watch;
     std::vector<Vec3> points = sheet.vertices;
     if (attempt > 0)
-      for (Vec3& p : points) p += random.uniform(0.2, 1.0) * jitter * random.direction();
+      for (Vec3& p : points) {
+        const Vec3 direction = random.direction();
+        p += random.uniform(0.2, 1.0) * jitter * direction;
+      }
     Strip strip = strip_of(points, sheet.triangles);
     done.snapped += snap_to_vertices(strip, complex, options.snap * size);
     done.near_seconds += watch.lap();

@@ -15,9 +15,9 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "base/bit_cast.h"
 #include "graph/nearest_lanes.h"
 
 #ifndef KERF_NEAREST_LANES_ONCE
@@ -239,9 +239,9 @@ class GroupSearch {
       hn::StoreU(below_c, du, rank_ + at + 2 * lanes);
     }
     for (std::uint32_t i = 0; i < count; ++i) order_[rank_[i]] = keys[i];
-    const float square = std::bit_cast<float>(order_[wanted_ - 1]);
-    const auto last = std::bit_cast<std::uint32_t>(square * static_cast<float>(1 + 4 * key_error) +
-                                                   static_cast<float>(2 * float_error));
+    const float square = bit_cast<float>(order_[wanted_ - 1]);
+    const auto last =
+        bit_cast<std::uint32_t>(square * static_cast<float>(1 + 4 * key_error) + static_cast<float>(2 * float_error));
     std::uint32_t taken = wanted_;
     while (taken < count && order_[taken] <= last) ++taken;
     // As a rule floats give the exact order already.

@@ -8,7 +8,8 @@
 namespace geo {
 
 bool operator==(const AdjacencyRow& a, const AdjacencyRow& b) {
-  return std::ranges::equal(a.to, b.to) && std::ranges::equal(a.bits, b.bits) && std::ranges::equal(a.paths, b.paths);
+  const auto equal = [](const auto& x, const auto& y) { return std::equal(x.begin(), x.end(), y.begin(), y.end()); };
+  return equal(a.to, b.to) && equal(a.bits, b.bits) && equal(a.paths, b.paths);
 }
 
 VisibilityGraph::VisibilityGraph() : storage_(Indirect<GraphStorage>::of({})) {}

@@ -1,10 +1,10 @@
 // write_json() of kerf/export.h: the sections of a .kerf file as one JSON object. Arrays are
 // streamed block by block, and numbers printed in the shortest form that reads back exactly
-// (std::to_chars).
-#include <charconv>
+// (write_number()).
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/number_text.h"
 #include "io/kerf_layout.h"
 #include "io/kerf_writer.h"
 #include "io/shown.h"
@@ -31,7 +31,7 @@ void append_number(std::string& text, T x) {
       return;
     }
   char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  text.append(digits, write_number(digits, x));
 }
 
 template <class T>

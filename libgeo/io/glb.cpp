@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "io/glb_file.h"
 #include "io/glb_physics.h"
@@ -29,7 +30,7 @@ Json primitive(GlbFile& glb, const Chunk& chunk, const std::vector<std::array<Ve
   struct Corner {
     std::array<float, 10> at;  // position, normal, uv, second uv
     std::array<std::uint16_t, 4> color;
-    auto operator<=>(const Corner&) const = default;
+    bool operator<(const Corner& o) const { return std::tie(at, color) < std::tie(o.at, o.color); }
   };
   std::map<Corner, std::uint32_t> rows;
   std::vector<float> position, normal, uv, uv2;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/number_text.h"
 #include "io/shown.h"
 #include "kerf/error.h"
 
@@ -54,8 +55,8 @@ class LineReader {
   double any_real(std::string_view word) const {
     double value = 0;
     const char* begin = word.data() + (!word.empty() && word[0] == '+');
-    const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) fail("'" + shown(word) + "' is not a number");
+    const auto [end, good] = read_number(begin, word.data() + word.size(), value);
+    if (!good || end != word.data() + word.size()) fail("'" + shown(word) + "' is not a number");
     return value;
   }
   /// A finite number. Throws InputError.

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/number_text.h"
 #include "io/glb_file.h"
 #include "io/image_type.h"
 #include "io/line_reader.h"
@@ -42,8 +43,8 @@ struct Statements {
 
 std::optional<double> number_of(std::string_view word) {
   double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};
+  const auto [end, good] = read_number(word.data(), word.data() + word.size(), value);
+  if (!good || end != word.data() + word.size() || !std::isfinite(value)) return {};
   return value;
 }
 

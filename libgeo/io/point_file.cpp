@@ -2,11 +2,11 @@
 // on each line.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <map>
 
+#include "base/bit_cast.h"
 #include "io/line_reader.h"
 #include "io/ply.h"
 #include "kerf/files.h"
@@ -183,7 +183,7 @@ void unpack_colors(Columns& columns, const std::vector<PcdField>& fields) {
     if ((field.name != "rgb" && field.name != "rgba") || !columns.contains(field.name)) continue;
     const Column packed = columns.at(field.name);
     for (const double value : packed) {
-      const auto bits = field.type == 'F' ? std::bit_cast<std::uint32_t>(static_cast<float>(value))
+      const auto bits = field.type == 'F' ? bit_cast<std::uint32_t>(static_cast<float>(value))
                                           : static_cast<std::uint32_t>(std::clamp(value, 0.0, 4294967295.0));
       columns["red"].push_back(bits >> 16 & 255);
       columns["green"].push_back(bits >> 8 & 255);

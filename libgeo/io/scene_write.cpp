@@ -1,10 +1,10 @@
 // write_scene() of kerf/files.h. Every value is written, also those that are the default, so that a
 // later change of a default does not change a recording.
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
 
+#include "base/number_text.h"
 #include "kerf/files.h"
 
 namespace geo {
@@ -14,7 +14,7 @@ namespace {
 std::string number(double x) {
   if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
   char text[40];
-  std::string s(text, std::to_chars(text, text + sizeof text, x).ptr);
+  std::string s(text, write_number(text, x));
   if (s.find_first_of(".e") == s.npos) s += ".0";
   return s;
 }

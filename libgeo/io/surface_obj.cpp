@@ -1,9 +1,9 @@
 // parse_obj() of io/surface_formats.h, write_obj() of kerf/files.h. Wavefront OBJ: texture
 // coordinates, normals, colours of vertices, materials or groups.
-#include <bit>
 #include <limits>
 #include <map>
 
+#include "base/bit_cast.h"
 #include "io/line_reader.h"
 #include "io/mtl.h"
 #include "io/surface_formats.h"
@@ -246,7 +246,7 @@ class Once {
   using Bits = std::array<std::uint64_t, V::SizeAtCompileTime>;
   static Bits bits(const V& value) {
     Bits result;
-    for (int i = 0; i < value.size(); ++i) result[static_cast<std::size_t>(i)] = std::bit_cast<std::uint64_t>(value[i]);
+    for (int i = 0; i < value.size(); ++i) result[static_cast<std::size_t>(i)] = bit_cast<std::uint64_t>(value[i]);
     return result;
   }
   std::ostream& out_;

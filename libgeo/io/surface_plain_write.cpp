@@ -1,10 +1,10 @@
 // write_stl() and write_off() of kerf/files.h. STL as by 3D Systems (1989), little-endian; OFF as
 // by Geomview.
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <string>
 
+#include "base/number_text.h"
 #include "kerf/files.h"
 
 namespace geo {
@@ -13,8 +13,7 @@ namespace {
 // Appends the shortest text from which a number returns to the bit.
 void append(std::string& text, double number) {
   std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number);
-  text.append(digits.data(), end.ptr);
+  text.append(digits.data(), write_number(digits.data(), number));
 }
 
 }  // namespace

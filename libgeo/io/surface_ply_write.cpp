@@ -1,10 +1,10 @@
 // write_ply() of kerf/files.h. Writes a surface as binary little-endian PLY, with all that
 // reading it back bit by bit needs.
 #include <cfloat>
-#include <charconv>
 #include <cmath>
 #include <span>
 
+#include "base/number_text.h"
 #include "io/surface_formats.h"
 
 namespace geo {
@@ -13,7 +13,7 @@ namespace {
 // A number in the shortest form that is read back exactly.
 std::string shortest(double x) {
   char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, x).ptr};
+  return {digits, write_number(digits, x)};
 }
 
 template <class T>

@@ -1,10 +1,10 @@
 // Values as USD text: numbers in the shortest form that is read back exactly.
 #pragma once
 
-#include <charconv>
 #include <iterator>
 #include <string>
 
+#include "base/number_text.h"
 #include "kerf/mesh.h"
 
 namespace geo::usd {
@@ -12,7 +12,7 @@ namespace geo::usd {
 /// Appends a number.
 inline void add_number(std::string& text, auto x) {
   char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  text.append(digits, write_number(digits, x));
 }
 
 /// Appends a list; item(i) appends its i-th element.
@@ -42,7 +42,7 @@ void add_tuple(std::string& text, const Row& row) {
   for (int k = 0; k < row.size(); ++k) {
     *at++ = k > 0 ? ',' : '(';
     if (k > 0) *at++ = ' ';
-    at = std::to_chars(at, std::end(chars), float(row[k])).ptr;
+    at = write_number(at, float(row[k]));
   }
   *at++ = ')';
   text.append(chars, at);

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 
 #include "base/random.h"
+#include "base/sine.h"
 #include "kerf/error.h"
 #include "score/voronoi.h"
 #include "score/walls.h"
@@ -117,7 +118,7 @@ TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
       const double uneven = rings && c < circles ? 0.25 * random.uniform(-1, 1) : 0;
       const double radius = c == circles ? 3 * reach + box.diagonal() : reach * std::pow((c + uneven) / circles, 1.6);
       const double a = angle[std::size_t(s)] + (c < circles ? turn / spokes * 0.15 * random.uniform(-1, 1) : 0);
-      points.push_back(points[0] + radius * Vec2(std::cos(a), std::sin(a)));
+      points.push_back(points[0] + radius * Vec2(cosine(a), sine(a)));
       segments.push_back({at(s, c - 1), at(s, c)});
       if (c < circles) segments.push_back({at(s, c), at(s + 1, c)});
     }

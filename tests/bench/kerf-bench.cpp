@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
       "kerf-live with a client that cuts; mechanics: "
       "time steps beside Bullet; python: the module beside C++; score: prescoring, one thread and all; simulation: a "
       "halved pumpkin with more and more nodes; validate: "
-      "mechanics against formulas");
+      "mechanics against formulas; wasm: cutting, scoring, a step in WebAssembly beside native ones");
   t.option("--frequency", frequencies, "Sizes of the pumpkin, 20 f^2 triangles each (11, 22, 45, 89, 179)");
   t.option("--nodes", nodes,
            "How many nodes there are (10000, 100000, 1000000; mechanics: 4000, 27000; contact: 230, 920, 3700; "
@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
         {"crack", bench::crack},       {"block", bench::block},     {"graph", bench::graph},
         {"concave", bench::concave},   {"contact", bench::contact}, {"mechanics", bench::mechanics},
         {"dataset", bench::dataset},   {"live", bench::live},       {"score", bench::score},
-        {"validate", bench::validate}, {"break", bench::impact},    {"simulation", bench::simulation}};
+        {"validate", bench::validate}, {"break", bench::impact},    {"simulation", bench::simulation},
+        {"wasm", bench::wasm}};
 #ifdef KERF_PYTHON_SCRIPT
     known["python"] = bench::python;
 #endif
@@ -40,7 +41,7 @@ int main(int argc, char** argv) {
       throw tool::UsageError(
           "nothing is known about '" + what +
           "'; there are break, crack, block, graph, concave, contact, dataset, live, mechanics, score, "
-          "simulation, validate and, with "
+          "simulation, validate, wasm and, with "
           "KERF_PYTHON, python");
     if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");
     for (const auto& f : frequencies) options.frequencies.push_back(std::atoi(f.c_str()));

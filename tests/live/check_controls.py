@@ -224,7 +224,7 @@ def reconnect():
     hand.drag(way[:8], each=hand.step, release=False)
     half = shown()
     check(f"reconnect: {whole} became {half} by half a stroke", half[1] > 0)
-    hand.run("window.stateBefore = live.told; wire.socket.close()")
+    hand.run("window.stateBefore = live.told; link.socket.close()")
     hand.wait("wire.open && live.told !== stateBefore")
     check(f"reconnect: the page shows {shown()}, not {half}", shown() == half)
     hand.mouse("mouseReleased", *way[7])

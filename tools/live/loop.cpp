@@ -13,44 +13,42 @@
 #include "live/scene_text.h"
 
 namespace live {
-namespace {
 
 using Clock = Pacer::Clock;
+
+namespace {
 
 // Seconds by which input may be late. A stroke whose begin waited longer is left out. A stroke ends
 // this long after its pointer was released, in the time of the simulation.
 constexpr double latest_begin = 1, latest_end = 2;
 
-class Loop {
- public:
-  Loop(Shown& shown, Inbox& inbox, Server& server, const LoopOptions& options)
-      : shown_(shown), inbox_(inbox), server_(server), options_(options), pacer_(pacer_of(*shown.session)) {
+}  // namespace
+
+struct Turns::Impl {
+  Impl(Shown& shown, Inbox& inbox, Pages& pages, const LoopOptions& options)
+      : shown_(shown), inbox_(inbox), shows_(pages), options_(options), pacer_(pacer_of(*shown.session)) {
     begin();
+    publish();
   }
 
-  LoopEnd run() {
-    publish();
-    while (options_.keep_on()) {
-      if (is_deserted()) return LoopEnd::deserted;
-      const bool moves = !pages_.empty() && !waits_ && (!paused_ || steps_ > 0);
-      const auto soon = Clock::now() + std::chrono::milliseconds(100);
-      // Until a frame is due, requests wait for it: so the input is the latest.
-      if (moves)
-        while (Clock::now() < pacer_.due()) std::this_thread::sleep_until(std::min(pacer_.due(), soon));
-      else
-        inbox_.wait_until(soon);
-      bool changed = false;
-      for (Request& request : inbox_.take()) changed |= take(std::move(request));
-      release();
-      if (!moves || waits_) {  // a reset may be among the requests
-        pacer_.restart();
-        if (changed) publish();
-        continue;
-      }
-      compute();
-      publish();
+  bool moves() const { return !pages_.empty() && !waits_ && (!paused_ || steps_ > 0); }
+  Clock::time_point due() const { return pacer_.due(); }
+  bool is_deserted() const {
+    return options_.linger > 0 && came_ && pages_.empty() &&
+           Clock::now() - gone_ > std::chrono::duration<double>(options_.linger);
+  }
+  void turn() {
+    const bool was_moving = moves();
+    bool changed = false;
+    for (Request& request : inbox_.take()) changed |= take(std::move(request));
+    release();
+    if (!was_moving || waits_) {  // a reset may be among the requests
+      pacer_.restart();
+      if (changed) publish();
+      return;
     }
-    return LoopEnd::asked;
+    compute();
+    publish();
   }
 
  private:
@@ -101,11 +99,6 @@ class Loop {
     }
   }
 
-  bool is_deserted() const {
-    return options_.linger > 0 && came_ && pages_.empty() &&
-           Clock::now() - gone_ > std::chrono::duration<double>(options_.linger);
-  }
-
   // Whether pages are to be shown a new state.
   bool take(Request request) {
     const ClientId page = request.page;
@@ -114,14 +107,14 @@ class Loop {
         throw BadMessage("frames take longer than a second: a stroke that began meanwhile is left out");
       return std::visit([&](auto& what) { return obey(page, what); }, request.what);
     } catch (const BadMessage& e) {
-      server_.tell(page, "error", e.what());
+      shows_.tell(page, "error", e.what());
       return false;
     }
   }
   bool obey(ClientId page, Join&) {
     pages_.insert(page);
     came_ = true;
-    for (const std::string& note : shown_.notes) server_.tell(page, "notice", note);
+    for (const std::string& note : shown_.notes) shows_.tell(page, "notice", note);
     return true;
   }
   bool obey(ClientId page, Leave&) {
@@ -145,7 +138,7 @@ class Loop {
       release_free_memory();
       begin();
       for (const ClientId page : pages_)
-        for (const std::string& note : shown_.notes) server_.tell(page, "notice", note);
+        for (const std::string& note : shown_.notes) shows_.tell(page, "notice", note);
       open.answer({});
     } catch (const std::exception& e) {
       open.answer({.error = e.what()});
@@ -226,12 +219,12 @@ class Loop {
     s->number = ++number_;
     session().show(*s);
     const geo::Simulation& run = session().run();
-    if (server_.wants_nodes()) {
+    if (shows_.wants_nodes()) {
       s->nodes = run.body().nodes.position;
       for (std::size_t i = 0; i < s->nodes.size(); ++i) s->nodes[i] += run.state().motion.displacement[i];
     }
-    if (server_.wants_stress()) s->stress = geo::von_mises_stress(run.solid(), run.body().nodes, run.state().motion);
-    if (const auto asked = server_.graphs_wanted(); asked != graphs_) {
+    if (shows_.wants_stress()) s->stress = geo::von_mises_stress(run.solid(), run.body().nodes, run.state().motion);
+    if (const auto asked = shows_.graphs_wanted(); asked != graphs_) {
       graphs_ = asked;
       graph_ = edges();
     }
@@ -239,7 +232,7 @@ class Loop {
     s->graph_number = graphs_;
     s->scene = scene_;
     s->statistics = statistics_text(session(), pace());
-    server_.publish(std::move(s));
+    shows_.publish(std::move(s));
   }
   Pace pace() {
     if (Clock::now() - said_ > std::chrono::seconds(4)) message_.clear();
@@ -264,7 +257,7 @@ class Loop {
 
   Shown& shown_;
   Inbox& inbox_;
-  Server& server_;
+  Pages& shows_;
   const LoopOptions& options_;
   Pacer pacer_;
   std::shared_ptr<const std::string> scene_;
@@ -279,10 +272,30 @@ class Loop {
   std::shared_ptr<const std::vector<std::pair<std::uint32_t, std::uint32_t>>> graph_;
 };
 
-}  // namespace
+Turns::Turns(Shown& shown, Inbox& inbox, Pages& pages, const LoopOptions& options)
+    : impl_(std::make_unique<Impl>(shown, inbox, pages, options)) {}
+Turns::~Turns() = default;
 
-LoopEnd run_loop(Shown& shown, Inbox& inbox, Server& server, const LoopOptions& options) {
-  return Loop(shown, inbox, server, options).run();
+std::optional<Clock::time_point> Turns::due() const {
+  if (!impl_->moves()) return {};
+  return impl_->due();
+}
+bool Turns::is_deserted() const { return impl_->is_deserted(); }
+void Turns::take() { impl_->turn(); }
+
+LoopEnd run_loop(Shown& shown, Inbox& inbox, Pages& pages, const LoopOptions& options) {
+  Turns turns(shown, inbox, pages, options);
+  while (options.keep_on()) {
+    if (turns.is_deserted()) return LoopEnd::deserted;
+    const auto soon = Clock::now() + std::chrono::milliseconds(100);
+    // Until a frame is due, requests wait for it: so the input is the latest.
+    if (const auto due = turns.due())
+      while (Clock::now() < *due) std::this_thread::sleep_until(std::min(*due, soon));
+    else
+      inbox.wait_until(soon);
+    turns.take();
+  }
+  return LoopEnd::asked;
 }
 
 }  // namespace live

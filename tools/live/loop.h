@@ -1,13 +1,15 @@
 // The simulation loop of a live run: sample the input, compute a frame, show it, keep real time.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "live/inbox.h"
-#include "live/server.h"
+#include "live/pages.h"
 #include "live/session.h"
 
 namespace live {
@@ -35,6 +37,27 @@ enum class LoopEnd {
 
 /// Runs until keep_on() is false, or no page is there for `linger` seconds after the last one went.
 /// `shown` changes where a page opens another model.
-LoopEnd run_loop(Shown& shown, Inbox& inbox, Server& server, const LoopOptions& options);
+LoopEnd run_loop(Shown& shown, Inbox& inbox, Pages& pages, const LoopOptions& options);
+
+/// The loop turn by turn, for a program that waits by itself.
+class Turns {
+ public:
+  /// Shows the run's first state. All must outlive the turns.
+  Turns(Shown& shown, Inbox& inbox, Pages& pages, const LoopOptions& options);
+  ~Turns();
+  Turns(const Turns&) = delete;
+  Turns& operator=(const Turns&) = delete;
+
+  /// When the next frame is due; nothing while the run stands still, up to the next request.
+  std::optional<std::chrono::steady_clock::time_point> due() const;
+  /// Whether no page was there for `linger` seconds.
+  bool is_deserted() const;
+  /// Takes all requests, and computes and shows a frame unless the run stands still.
+  void take();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace live

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cctype>
 #include <chrono>
-#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -22,7 +21,7 @@
 #include <boost/beast/websocket.hpp>
 
 #include <kerf/error.h>
-#include "live/encode.h"
+#include "live/page_view.h"
 
 namespace live {
 
@@ -39,7 +38,6 @@ using HttpResponse = http::response<http::string_body>;
 namespace {
 
 constexpr int max_connections = 64, max_messages = 240;  // at a time; per second and page
-constexpr std::size_t max_notices = 16;                  // that wait for a page
 constexpr auto request_time = std::chrono::seconds(10);
 constexpr auto farewell_time = std::chrono::milliseconds(500);  // for pages to hear of the end
 constexpr std::uint64_t largest_model = 256 << 20;              // bytes of a file that a page opens
@@ -125,10 +123,10 @@ struct Server::Impl {
   std::thread thread;
 };
 
-// The WebSocket of a page. It has at most one message that is not confirmed.
+// The WebSocket of a page.
 class Server::Impl::Link : public std::enable_shared_from_this<Link> {
  public:
-  Link(Impl& hub, Socket socket) : hub_(hub), id_(++hub.last_id), ws_(std::move(socket)) {}
+  Link(Impl& hub, Socket socket) : hub_(hub), id_(++hub.last_id), view_(id_), ws_(std::move(socket)) {}
   ~Link() {
     want_nodes(false);
     want_stress(false);
@@ -152,38 +150,15 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     });
   }
   void tell(std::string_view key, std::string_view sentence) {
-    if (notices_.size() >= max_notices) return;
-    notices_.push_back(encode_notice(key, sentence, 0));
+    view_.tell(key, sentence);
     pump();
   }
   // Writes what there is to write, if the page is ready for it.
   void pump() {
     if (writing_ || !joined_) return;
-    const auto& s = hub_.latest;
-    if (!notices_.empty()) {
-      message_ = std::move(notices_.front());
-      notices_.pop_front();
-    } else if (awaited_ || !s) {
-      return;
-    } else if (s->graph && graph_asked_ && s->graph_number >= *graph_asked_) {
-      graph_asked_.reset();
-      awaited_ = ++sequence_;
-      message_ = encode_graph(*s, sequence_);
-    } else if (s->number != sent_) {
-      const auto taken = s->taken.find(id_);
-      const Content content{.sequence = ++sequence_,
-                            .nodes = nodes_,
-                            .stress = stress_,
-                            .taken = taken == s->taken.end() ? 0 : taken->second};
-      const bool knows = known_ && scene_ == s->scene;  // another scene where another model was opened
-      message_ = knows ? encode_frame(*s, *known_, content) : encode_state(*s, content);
-      known_ = s->topology;
-      scene_ = s->scene;
-      sent_ = s->number;
-      awaited_ = sequence_;
-    } else {
-      return;
-    }
+    std::optional<std::string> message = view_.next(hub_.latest);
+    if (!message) return;
+    message_ = std::move(*message);
     writing_ = true;
     ws_.binary(true);
     ws_.async_write(net::buffer(message_), [self = shared_from_this()](error_code error, std::size_t) {
@@ -254,7 +229,7 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     return messages_ <= max_messages;
   }
   void acknowledged(std::uint32_t sequence) {
-    if (awaited_ == sequence) awaited_.reset();
+    view_.acknowledged(sequence);
     pump();
   }
   void obey(Command command) {
@@ -262,26 +237,20 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     if (const auto* want = std::get_if<Want>(&command)) {
       if (want->nodes) want_nodes(*want->nodes);
       if (want->stress) want_stress(*want->stress);
-      if (want->graph) graph_asked_ = ++hub_.graphs_wanted;
+      if (want->graph) view_.ask_graph(++hub_.graphs_wanted);
     }
     if (!hub_.inbox.put({id_, std::move(command)})) tell("error", "the simulation is busy; the message is left out");
   }
-  void want_nodes(bool on) { hub_.nodes_wanted += int(on) - int(std::exchange(nodes_, on)); }
-  void want_stress(bool on) { hub_.stress_wanted += int(on) - int(std::exchange(stress_, on)); }
+  void want_nodes(bool on) { hub_.nodes_wanted += int(on) - int(std::exchange(view_.nodes, on)); }
+  void want_stress(bool on) { hub_.stress_wanted += int(on) - int(std::exchange(view_.stress, on)); }
 
   Impl& hub_;
   ClientId id_;
+  PageView view_;
   websocket::stream<Socket> ws_;
   beast::flat_buffer buffer_;
-  std::deque<std::string> notices_;
   std::string message_;
-  bool joined_ = false, writing_ = false, nodes_ = false, stress_ = false;
-  std::uint32_t sequence_ = 0;
-  std::optional<std::uint32_t> awaited_;  // number of the message that is not confirmed
-  std::shared_ptr<const Topology> known_;
-  std::shared_ptr<const std::string> scene_;
-  std::uint64_t sent_ = 0;
-  std::optional<std::uint64_t> graph_asked_;  // number of the request that is not answered
+  bool joined_ = false, writing_ = false;
   std::chrono::steady_clock::time_point second_;
   int messages_ = 0;
 };

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "live/inbox.h"
-#include "live/snapshot.h"
+#include "live/pages.h"
 
 namespace live {
 
@@ -18,25 +18,22 @@ struct ServerOptions {
 };
 
 /// Serves until it is destroyed, which tells all pages that it ends, and closes all connections.
-class Server {
+class Server : public Pages {
  public:
   /// Listens, and starts the thread. Requests go to `inbox`, which must outlive the server. Throws
   /// geo::InputError for an address or port that cannot be listened at.
   Server(const ServerOptions& options, Inbox& inbox);
-  ~Server();
+  ~Server() override;
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
   /// The address of the page.
   std::string url() const;
-  /// Shows a state to all pages, each as soon as it has confirmed what it got before.
-  void publish(std::shared_ptr<const Snapshot> snapshot);
-  /// Tells a page a sentence. `key`: "error" or "notice".
-  void tell(ClientId page, const std::string& key, const std::string& sentence);
-  /// Whether a page wants nodes or stress, and how many requests of the graph there were.
-  bool wants_nodes() const;
-  bool wants_stress() const;
-  std::uint64_t graphs_wanted() const;
+  void publish(std::shared_ptr<const Snapshot> snapshot) override;
+  void tell(ClientId page, const std::string& key, const std::string& sentence) override;
+  bool wants_nodes() const override;
+  bool wants_stress() const override;
+  std::uint64_t graphs_wanted() const override;
 
  private:
   struct Impl;

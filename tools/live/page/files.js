@@ -24,8 +24,8 @@ async function openFiles(files) {
   endStroke();
   $("wait").textContent = `Opening ${file.name} …`, $("wait").hidden = false;
   try {
-    const answer = await fetch("open?name=" + encodeURIComponent(file.name), { method: "POST", body: file });
-    if (!answer.ok) notice({ error: (await answer.text()).trim() });
+    const reason = await openModel(file);
+    if (reason !== "") notice({ error: reason });
     else if (files.length > 1) notice({ notice: `Only ${file.name} is opened: materials and images are not shown` });
   } catch (problem) {
     notice({ error: `${file.name} could not be sent: ${problem.message}` });

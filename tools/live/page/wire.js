@@ -1,5 +1,6 @@
-// The connection to kerf-live: binary messages are read into what the layers draw; text messages are what the hand does.
-const wire = { socket: null, open: false, wait: 500, sequence: -1, held: null, input: 0, sent: new Map(), latency: 0, bytes: 0, messages: 0 };
+// The messages of kerf-live: binary ones are read into what the layers draw; text messages are what the hand does.
+// Another file has the transport: connect(), transmit(text), openModel(file).
+const wire = { open: false, sequence: -1, held: null, input: 0, sent: new Map(), latency: 0, bytes: 0, messages: 0 };
 
 // Little-endian fields, one after the other.
 class Reader {
@@ -66,7 +67,7 @@ function acknowledge(sequence) {
 }
 
 function send(message) {
-  if (wire.open) wire.socket.send(JSON.stringify(message));
+  if (wire.open) transmit(JSON.stringify(message));
 }
 // A message of the pointer, numbered: the frame that shows it tells how late that is.
 function sendInput(kind, message) {
@@ -83,38 +84,17 @@ function inputTaken(input) {
   }
 }
 
-const patience = 10000;  // milliseconds without a connection, after which the page says what may be the reason
-function connect() {
-  const address = new URL("live", location.href);
-  address.protocol = address.protocol.replace("http", "ws"), address.hash = address.search = "";
-  const socket = new WebSocket(address);
-  socket.binaryType = "arraybuffer";
-  wire.socket = socket;
-  socket.onopen = () => {
-    wire.open = true, wire.wait = 500, wire.sequence = -1, wire.lost = undefined;
-    sendWants(true), connection("");
-  };
-  socket.onmessage = (e) => {
-    if (typeof e.data === "string") return notice(JSON.parse(e.data));
-    try {
-      receive(e.data);
-    } catch (problem) {
-      console.error(problem);
-      wire.broken = problem.message;
-      socket.close();
-    }
-  };
-  socket.onclose = (e) => {
-    wire.open = false, endStroke();
-    // 1001: the program has said that it ends.
-    if (e.code === 1001) return connection("kerf-live has ended. Start it again, and open the address that it prints.");
-    wire.lost ??= performance.now();
-    const long = performance.now() - wire.lost > patience;
-    connection(wire.broken ?? (long ? "kerf-live does not answer. If it has ended, start it again, and open the address that it prints." : "No connection – trying again …"));
-    wire.broken = undefined;
-    setTimeout(connect, wire.wait);
-    wire.wait = Math.min(wire.wait * 1.6, 5000);
-  };
+// What the program has said: a sentence, or bytes. False where it cannot be understood.
+function arrived(data) {
+  if (typeof data === "string") return notice(JSON.parse(data)), true;
+  try {
+    receive(data);
+    return true;
+  } catch (problem) {
+    console.error(problem);
+    wire.broken = problem.message;
+    return false;
+  }
 }
 document.addEventListener("visibilitychange", () => {
   if (!document.hidden && wire.sequence >= 0) send({ ack: wire.sequence });

@@ -1,0 +1,360 @@
+// Kerf for JavaScript: breaks and cuts solids. `const k = await kerf()`, then names as in Python.
+import makeCore from "./kerf-core.js";
+import { started } from "./load.js";
+
+let core = null;  // the module of WebAssembly, once it is loaded
+
+// What a call failed with; `name` is InputError, GeometryError, Interrupted, RangeError or Error. */
+export class KerfError extends Error {
+  constructor(name, message) {
+    super(message);
+    this.name = name;
+  }
+}
+
+// A result of the module, or the error that it stands for.
+export function taken(result) {
+  if (result !== null && typeof result === "object" && typeof result.failure === "string") throw new KerfError(result.failure, result.message);
+  return result;
+}
+const call = (name, ...given) => taken(core[name](...given));
+
+// Calls with a function that hears of progress. It may stop the call by false, or by an error, which then ends the call.
+function withProgress(progress, work) {
+  if (progress === undefined) return work(undefined);
+  let problem = null;
+  const report = (phase, done, total) => {
+    try {
+      return progress(phase, done, total) !== false;
+    } catch (error) {
+      problem = error;
+      return false;
+    }
+  };
+  try {
+    return work(report);
+  } catch (error) {
+    throw problem ?? error;
+  }
+}
+
+// ---- Memory: an object owns its part of the module's memory until delete(), or until nobody holds it
+
+const forgotten = new FinalizationRegistry((handle) => handle.delete());
+export const dispose = Symbol.dispose ?? Symbol.for("Symbol.dispose");
+
+export class Owner {
+  #handle;
+  constructor(handle) {
+    this.#handle = handle;
+    forgotten.register(this, handle, this);
+  }
+  /** The object in the module. */
+  get handle() {
+    if (this.#handle === null) throw new KerfError("InputError", `this ${this.constructor.name} was deleted`);
+    return this.#handle;
+  }
+  /** Frees its memory. */
+  delete() {
+    if (this.#handle === null) return;
+    forgotten.unregister(this);
+    this.#handle.delete();
+    this.#handle = null;
+  }
+  [dispose]() { this.delete(); }
+}
+
+// ---- Arrays
+
+// Numbers as a typed array of this kind: a typed array, an array, or an array of rows.
+export function numbers(kind, given, name) {
+  if (given instanceof kind) return given;
+  if (ArrayBuffer.isView(given) && !(given instanceof DataView)) return kind.from(given);
+  if (Array.isArray(given)) return kind.from(given.length > 0 && typeof given[0] === "object" ? given.flatMap((row) => [...row]) : given);
+  throw new KerfError("InputError", `${name}: give a typed array, or an array of numbers or rows`);
+}
+const rows = (given, name) => numbers(Float64Array, given, name);
+const whole = (given, name) => {
+  const list = numbers(Float64Array, given, name);
+  const wrong = list.findIndex((x) => !Number.isInteger(x) || x < 0 || x > 0xffffffff);
+  if (wrong >= 0) throw new KerfError("InputError", `${name}: ${list[wrong]} is no index`);
+  return Uint32Array.from(list);
+};
+const indices = (given, name) => (given instanceof Uint32Array ? given : whole(given, name));
+
+// ---- Meshes
+
+/** Triangles with attributes. Arrays are made once and shared: do not change them. */
+export class Mesh extends Owner {
+  #arrays = new Map();
+  #measures = null;
+  constructor(vertices, faces, attributes = {}) {
+    super(vertices instanceof Made ? vertices.handle : makeMesh(vertices, faces, attributes));
+  }
+  #array(name) {
+    if (!this.#arrays.has(name)) this.#arrays.set(name, call("meshArray", this.handle, name));
+    return this.#arrays.get(name);
+  }
+  get #measured() { return (this.#measures ??= call("meshMeasures", this.handle)); }
+  get vertices() { return this.#array("vertices"); }
+  get faces() { return this.#array("faces"); }
+  get uv() { return this.#array("uv"); }
+  get normals() { return this.#array("normals"); }
+  get colors() { return this.#array("colors"); }
+  get groups() { return this.#array("groups"); }
+  get groupNames() { return this.#array("groupNames"); }
+  get patch() { return this.#array("patch"); }
+  get site() { return this.#array("site"); }
+  get source() { return this.#array("source"); }
+  get volume() { return this.#measured.volume; }
+  get area() { return this.#measured.area; }
+  get centroid() { return this.#measured.centroid; }
+  get inertia() { return this.#measured.inertia; }
+  get bounds() { return this.#measured.bounds; }
+  /** Metres of one unit, or undefined. */
+  get unit() { return this.#measured.unit || undefined; }
+  check() { return call("checkMesh", this.handle); }
+  save(format) { return call("save", this.handle, format); }
+  /** Convex parts. */
+  decomposition({ parts = 1, corners = 64 } = {}) { return call("hulls", this.handle, parts, corners).map(meshOf); }
+  /** The model, to be cracked; throws where the mesh is no valid model. */
+  complex() { return new Complex(new Made(call("makeComplex", this.handle))); }
+  crack(what, options = {}) {
+    const complex = this.complex();
+    try {
+      complex.crack(what, options);
+    } catch (error) {
+      complex.delete();
+      throw error;
+    }
+    return complex;
+  }
+  /** The pieces into which a plane, sheet or front divides it. */
+  split(what, options = {}) { return piecesOf(this.crack(what, options), options); }
+  cut(what, options = {}) { return this.split(what, options); }
+  /** The pieces of a pattern. */
+  fracture(pieces = 20, options = {}) {
+    const complex = this.complex();
+    try {
+      const walls = score(complex, { ...options, pieces });
+      complex.crack(walls);
+      walls.delete();
+    } catch (error) {
+      complex.delete();
+      throw error;
+    }
+    return piecesOf(complex, options);
+  }
+}
+
+// A handle of the module, for constructors.
+class Made {
+  constructor(handle) { this.handle = handle; }
+}
+const meshOf = (handle) => new Mesh(new Made(handle));
+
+function makeMesh(vertices, faces, { uv, normals, colors, groups, groupNames } = {}) {
+  const given = {};
+  for (const [name, value] of Object.entries({ uv, normals, colors })) if (value !== undefined) given[name] = rows(value, name);
+  if (groups !== undefined) given.groups = numbers(Int32Array, groups, "groups"), given.groupNames = [...(groupNames ?? [])].map(String);
+  return call("makeMesh", rows(vertices, "vertices"), indices(faces, "faces"), given);
+}
+
+/** A mesh that is a valid model: closed, oriented outwards, free of self-intersection. */
+export class Solid extends Mesh {
+  constructor(vertices, faces, attributes) {
+    super(vertices instanceof Mesh ? new Made(vertices.handle.clone()) : vertices, faces, attributes);
+    try {
+      call("requireSolid", this.handle);
+    } catch (error) {
+      this.delete();
+      throw error;
+    }
+  }
+  /** Closes holes, turns shells outwards, unites parts that overlap. */
+  static repaired(mesh, options = {}) { return new Solid(new Made(call("repaired", mesh.handle, options))); }
+}
+
+/** A piece of a broken model. */
+export class Piece extends Mesh {
+  #told;
+  constructor(told) {
+    super(new Made(told.mesh));
+    this.#told = { volume: told.volume, centroid: told.centroid, hulls: told.hulls.map(meshOf), index: told.index };
+  }
+  get index() { return this.#told.index; }
+  get volume() { return this.#told.volume; }
+  get centroid() { return this.#told.centroid; }
+  get hulls() { return this.#told.hulls; }
+  delete() {
+    for (const hull of this.hulls) hull.delete();
+    super.delete();
+  }
+}
+// Of a complex that is then deleted.
+function piecesOf(complex, options) {
+  try {
+    return complex.pieces(options);
+  } finally {
+    complex.delete();
+  }
+}
+
+// ---- Cracks
+
+/** A plane, for crack() and split(). */
+export class Plane {
+  constructor(point, normal) {
+    this.point = rows(point, "point");
+    this.normal = rows(normal, "normal");
+  }
+}
+export const plane = (point, normal) => new Plane(point, normal);
+
+/** A polyline that moves: the points of each step. */
+export class Front {
+  constructor(steps, { closed = false } = {}) {
+    this.steps = [...steps].map((step) => rows(step, "steps"));
+    this.closed = closed;
+    if (this.steps.length < 2) throw new KerfError("InputError", "steps: give two at least");
+  }
+}
+
+/** The walls of a pattern: a sheet that divides a model. */
+export class Score {
+  constructor({ sheet, pieces, attempts }) {
+    this.sheet = meshOf(sheet), this.pieces = pieces, this.attempts = attempts;
+  }
+  delete() { this.sheet.delete(); }
+  [dispose]() { this.delete(); }
+}
+
+/** Looks for a pattern that divides a model into as many pieces as wanted. */
+export function score(model, options = {}) {
+  const { progress, ...rest } = options;
+  if (rest.impact !== undefined) rest.impact = rows(rest.impact, "impact");
+  const complex = model instanceof Complex ? model : model.complex();
+  try {
+    return new Score(withProgress(progress, (report) => call("score", complex.handle, rest, report)));
+  } finally {
+    if (complex !== model) complex.delete();
+  }
+}
+
+/** A front in a complex, advanced step by step. */
+export class FrontState extends Owner {
+  constructor(handle) { super(handle); }
+  get crack() { return call("frontCrack", this.handle); }
+  advance(points, options = {}) { return call("advance", this.handle, rows(points, "points"), options); }
+}
+
+/** A cracked model; it changes by its methods. */
+export class Complex extends Owner {
+  constructor(model) { super(model instanceof Made ? model.handle : call("makeComplex", model.handle)); }
+  #last = 0;  // the largest number of a front
+  copy() { return new Complex(new Made(call("copyComplex", this.handle))); }
+  get faceCount() { return call("counts", this.handle).faces; }
+  get vertexCount() { return call("counts", this.handle).vertices; }
+  get crackCount() { return call("counts", this.handle).cracks; }
+  get diagonal() { return call("counts", this.handle).diagonal; }
+  get bonds() { return call("bonds", this.handle); }
+  /** The two-sided surface, with patch, site and source. */
+  surface() { return meshOf(call("surface", this.handle)); }
+  /** What is wrong with it, or an empty text. */
+  check() { return call("checkComplex", this.handle); }
+  /** Cuts along a score, mesh, plane or front, or a list of these. */
+  crack(what, options = {}) {
+    for (const one of Array.isArray(what) ? what : [what]) {
+      if (one instanceof Front) this.#sweep(one, options);
+      else this.insert(one, options);
+    }
+    return this;
+  }
+  #sweep({ steps, closed }, options) {
+    const front = this.front(steps[0], { closed });
+    try {
+      for (const step of steps.slice(1)) front.advance(step, options);
+    } finally {
+      front.delete();
+    }
+  }
+  insert(sheet, options = {}) {
+    if (sheet instanceof Score) return this.insert(sheet.sheet, options);
+    if (sheet instanceof Mesh) return call("insert", this.handle, sheet.handle, options);
+    if (!(sheet instanceof Plane)) throw new KerfError("InputError", "crack: give a Score, Mesh, Plane or Front");
+    const made = meshOf(call("planeSheet", this.handle, sheet.point, sheet.normal));
+    try {
+      return this.insert(made, options);
+    } finally {
+      made.delete();
+    }
+  }
+  front(points, { closed = false } = {}) {
+    const front = new FrontState(call("beginFront", this.handle, rows(points, "points"), closed, this.#last + 1));
+    this.#last = front.crack;
+    return front;
+  }
+  undo() { call("undo", this.handle); }
+  pieces(options = {}) { return call("pieces", this.handle, options).map((told, index) => new Piece({ ...told, index })); }
+  hierarchy(levels) { return call("hierarchy", this.handle, levels); }
+  save(format, options = {}) {
+    if (format === "glb" || format === "usda") return call("savePieces", this.handle, format, options);
+    const surface = this.surface();
+    try {
+      return surface.save(format);
+    } finally {
+      surface.delete();
+    }
+  }
+}
+
+// ---- Files and shapes
+
+/** Reads OBJ, PLY, STL, OFF or GLB: a Solid, or a Mesh where it is no valid model. */
+export function load(bytes, format = "") {
+  const data = bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : bytes;
+  if (!(data instanceof Uint8Array)) throw new KerfError("InputError", "load: give the bytes of a file, as a Uint8Array or ArrayBuffer");
+  const { mesh, notes } = call("load", data, format.includes(".") ? format : `model${format ? "." : ""}${format}`);
+  const made = meshOf(mesh);
+  let result = made;
+  try {
+    result = new Solid(made);
+    made.delete();
+  } catch (error) {
+    if (!(error instanceof KerfError)) throw error;
+  }
+  result.notes = notes;
+  return result;
+}
+
+const shape = (name, size, fineness, letter = "") => new Solid(new Made(call("shape", name, size, fineness, letter)));
+/** Shapes to try things with. */
+export const shapes = {
+  block: (size = [1, 1, 1], { edge = 0.25 } = {}) => shape("block", rows(size, "size"), edge),
+  sphere: (frequency = 8) => shape("sphere", [], frequency),
+  pumpkin: (frequency = 16) => shape("pumpkin", [], frequency),
+  apple: (frequency = 16) => shape("apple", [], frequency),
+  polyp: (frequency = 12) => shape("polyp", [], frequency),
+  letter: (letter, { depth = 0.2, resolution = 12 } = {}) => shape("letter", [depth], resolution, letter),
+};
+
+// ---- Beginning
+
+/** Begins a simulation; loads its module first. */
+async function simulation(scene, options = {}) {
+  const { begin } = await import("./simulation.js");
+  return begin(scene, options, { Mesh, rows, numbers, taken, Owner, KerfError, withProgress });
+}
+
+const api = {
+  Mesh, Solid, Piece, Plane, Front, Score, Complex, FrontState, KerfError, plane, score, load, shapes, simulation,
+  patterns: ["planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks"],
+  /** Bytes of the module's heap that are in use. */
+  usedBytes: () => core.usedBytes(),
+};
+
+/** Loads the module, once. `wasm`: where it is, or its bytes; by default beside this file. */
+export default async function kerf({ wasm } = {}) {
+  core ??= await started(makeCore, wasm ?? new URL("./kerf-core.wasm", import.meta.url));
+  return api;
+}

@@ -1,0 +1,280 @@
+// Scores, cracks, pieces, bonds.
+#include <sstream>
+
+#include <kerf/check.h>
+#include <kerf/export.h>
+#include <kerf/hierarchy.h>
+#include <kerf/pieces.h>
+#include <kerf/score.h>
+#include "bind.h"
+
+namespace kerf_js {
+namespace {
+
+// The front of a complex, which lives as long as either.
+struct Front {
+  ComplexHandle owner;
+  geo::FrontState state;
+};
+using FrontHandle = std::shared_ptr<Front>;
+
+geo::Vec3 axis_from(const val& axis) {
+  if (axis.isString()) {
+    const auto name = axis.as<std::string>();
+    if (name.size() != 1 || name[0] < 'x' || name[0] > 'z')
+      throw geo::InputError("axis: '" + name + "' is not 'x', 'y', 'z' or three numbers");
+    return geo::Vec3::Unit(name[0] - 'x');
+  }
+  const geo::Vec3 direction = point_from(axis, "axis");
+  if (!(direction.norm() > 0)) throw geo::InputError("axis: has no length");
+  return direction;
+}
+
+geo::ScoreOptions score_options(const val& options) {
+  geo::ScoreOptions o;
+  if (has(options, "pattern")) o.pattern.pattern = geo::pattern_named(options["pattern"].as<std::string>());
+  take(options, "pieces", o.pieces, 1, 1000000);
+  take(options, "attempts", o.attempts, 1, 1000000);
+  take(options, "depth", o.depth, 0, 1);
+  take(options, "jagged", o.jagged.amplitude, 0, 1);
+  take(options, "frequency", o.jagged.frequency, 0, 1e4);
+  take(options, "octaves", o.jagged.octaves, 1, 16);
+  take(options, "edge", o.jagged.edge, 0, 1);
+  take(options, "cluster", o.pattern.cluster, 0, 10);
+  take(options, "grain", o.pattern.grain, 1, 1000);
+  take_seed(options, "seed", o.pattern.seed);
+  o.jagged.seed = o.pattern.seed;
+  if (has(options, "axis")) o.pattern.axis = axis_from(options["axis"]);
+  if (has(options, "impact")) o.pattern.impact = point_from(options["impact"], "impact");
+  return o;
+}
+
+geo::Complex complex_of(const geo::TriangleMesh& mesh) {
+  return mesh.two_sided() ? geo::Complex::from_two_sided(mesh) : geo::Complex::from_skin(mesh);
+}
+
+val make_complex(const MeshHandle& model) {
+  return guarded([&] {
+    geo::require_solid(model->mesh);
+    return std::make_shared<Complex>(Complex{complex_of(model->mesh), model});
+  });
+}
+
+val copy_complex(const ComplexHandle& complex) {
+  return guarded([&] { return std::make_shared<Complex>(*complex); });
+}
+
+val score(const ComplexHandle& model, const val& options, const val& progress) {
+  return guarded([&] {
+    geo::Score made = geo::make_score(model->complex, score_options(options), progress_to(progress));
+    val result = val::object();
+    result.set("pieces", made.pieces);
+    result.set("attempts", made.attempts);
+    result.set("sheet", handle(std::move(made.sheet)));
+    return result;
+  });
+}
+
+val changes(const geo::CrackDelta& delta) {
+  const auto ids = [](const std::vector<geo::FaceId>& faces) {
+    std::vector<std::uint32_t> values;
+    for (const geo::FaceId f : faces) values.push_back(f.value);
+    return array_of(values);
+  };
+  val result = val::object();
+  result.set("removedFaces", ids(delta.removed_faces));
+  result.set("newFaces", ids(delta.new_faces));
+  result.set("newCrackFaces", ids(delta.new_crack_faces));
+  return result;
+}
+
+val insert(const ComplexHandle& complex, const MeshHandle& sheet, const val& options) {
+  return guarded([&] {
+    geo::Complex& k = complex->complex;
+    return changes(geo::insert_sheet(k, sheet->mesh, k.crack_count() + 1, crack_options(options)));
+  });
+}
+
+// A square that parts the extent of the complex, and reaches beyond it by a half.
+val plane_sheet(const ComplexHandle& complex, const val& point, const val& normal) {
+  return guarded([&] {
+    const geo::Vec3 p = point_from(point, "point"), n = point_from(normal, "normal");
+    if (!(n.norm() > 0)) throw geo::InputError("normal: has no length");
+    const geo::Box3& box = complex->complex.extent();
+    const geo::Vec3 up = n.normalized(), u = up.unitOrthogonal(), v = up.cross(u);
+    const geo::Vec3 middle = box.center() - up.dot(box.center() - p) * up;
+    const double reach = 0.75 * box.diagonal();
+    geo::TriangleMesh sheet;
+    for (const auto& [a, b] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)})
+      sheet.vertices.push_back(middle + reach * (a * u + b * v));
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return handle(std::move(sheet));
+  });
+}
+
+val surface(const ComplexHandle& complex) {
+  return guarded([&] {
+    geo::TriangleMesh mesh = complex->complex.two_sided();
+    if (complex->model) geo::transfer_attributes(complex->model->mesh, mesh);
+    return handle(std::move(mesh));
+  });
+}
+
+val undo(const ComplexHandle& complex) {
+  return guarded([&] { complex->complex.undo(); });
+}
+
+val counts(const ComplexHandle& complex) {
+  val result = val::object();
+  result.set("faces", complex->complex.live_face_count());
+  result.set("vertices", complex->complex.vertex_count());
+  result.set("cracks", complex->complex.crack_count());
+  result.set("diagonal", complex->complex.extent().diagonal());
+  return result;
+}
+
+val check(const ComplexHandle& complex) {
+  return guarded([&] { return geo::check_complex(complex->complex, geo::SelfIntersections::find).first_problem; });
+}
+
+// ---- Pieces
+
+// A texture tile on inner faces is a fraction of the diagonal, as in kerf-pieces.
+double tile_of(const ComplexHandle& complex, const val& options) {
+  double tile = 0.25;
+  take(options, "tile", tile, 1e-6, 1e6);
+  return tile * complex->complex.extent().diagonal();
+}
+
+std::vector<geo::Chunk> chunks_of(const ComplexHandle& complex, const geo::Pieces& found, const val& options) {
+  const geo::TriangleMesh none;
+  const geo::TriangleMesh& original = complex->model ? complex->model->mesh : none;
+  return geo::make_chunks(complex->complex, found, original, tile_of(complex, options));
+}
+
+val pieces(const ComplexHandle& complex, const val& options) {
+  return guarded([&] {
+    int corners = 64, parts = 1;
+    take(options, "corners", corners, 4, 100000);
+    take(options, "parts", parts, 1, 1000);
+    const bool with_hulls = has(options, "hulls") && options["hulls"].as<bool>();
+    val result = val::array();
+    for (geo::Chunk& chunk : chunks_of(complex, geo::find_pieces(complex->complex), options)) {
+      val piece = val::object();
+      val around = val::array();
+      if (with_hulls)
+        for (geo::TriangleMesh& hull :
+             geo::convex_decomposition(chunk.mesh, static_cast<std::size_t>(parts), static_cast<std::size_t>(corners)))
+          append(around, val(handle(std::move(hull))));
+      piece.set("volume", chunk.volume);
+      piece.set("centroid", array_of(chunk.centroid));
+      piece.set("hulls", around);
+      piece.set("mesh", handle(std::move(chunk.mesh)));
+      append(result, piece);
+    }
+    return result;
+  });
+}
+
+val bonds(const ComplexHandle& complex) {
+  return guarded([&] {
+    val result = val::array();
+    for (const geo::Bond& bond : geo::find_bonds(complex->complex, geo::find_pieces(complex->complex))) {
+      val item = val::object();
+      item.set("a", bond.a);
+      item.set("b", bond.b);
+      item.set("area", bond.area);
+      item.set("normal", array_of(bond.normal));
+      item.set("centroid", array_of(bond.centroid));
+      item.set("section", bond.section);
+      append(result, item);
+    }
+    return result;
+  });
+}
+
+val hierarchy(const ComplexHandle& complex, int levels) {
+  return guarded([&] {
+    if (levels < 1) throw geo::InputError("levels: give at least 1, that of the pieces");
+    const geo::Pieces found = geo::find_pieces(complex->complex);
+    val result = val::array();
+    for (const geo::ClusterLevel& level : geo::make_hierarchy(found.volume, geo::find_bonds(complex->complex, found),
+                                                              static_cast<std::size_t>(levels))) {
+      val item = val::object();
+      item.set("of", array_of(level.of));
+      item.set("volume", array_of(level.volume));
+      append(result, item);
+    }
+    return result;
+  });
+}
+
+val save_pieces(const ComplexHandle& complex, const std::string& format, const val& options) {
+  return guarded([&] {
+    if (format != "glb" && format != "usda") throw geo::InputError("save: '" + format + "' is none of glb, usda, ply");
+    int corners = 64, parts = 1;
+    take(options, "corners", corners, 0, 100000);
+    take(options, "parts", parts, 1, 1000);
+    const bool z_up = has(options, "zUp") && options["zUp"].as<bool>();
+    const geo::Pieces found = geo::find_pieces(complex->complex);
+    const auto chunks = chunks_of(complex, found, options);
+    const auto shared = geo::find_bonds(complex->complex, found);
+    geo::ChunkLabels labels;
+    labels.kind = "node";
+    labels.names = geo::piece_names(found.count);
+    std::ostringstream out;
+    if (format == "usda")
+      geo::write_usd_pieces(out, chunks, shared, labels,
+                            {.z_up = z_up, .hull_parts = std::size_t(parts), .image_prefix = ""});
+    else
+      geo::write_glb(out, chunks, shared, labels,
+                     {.hull_corners = std::size_t(corners), .hull_parts = std::size_t(parts), .z_up = z_up});
+    return bytes_of(std::move(out).str());
+  });
+}
+
+// ---- Fronts
+
+val begin_front(const ComplexHandle& complex, const val& points, bool closed, int crack) {
+  return guarded([&] {
+    const auto line = points_from(points, "points");
+    const std::int32_t number = std::max(crack, complex->complex.crack_count() + 1);
+    return std::make_shared<Front>(Front{complex, geo::begin_front(line, closed, number)});
+  });
+}
+
+val advance(const FrontHandle& front, const val& points, const val& options) {
+  return guarded([&] {
+    std::vector<geo::Vec3> present;
+    for (const auto& p : front->state.points) present.push_back(p.position);
+    const auto next = geo::resample_front(present, points_from(points, "points"), front->state.closed);
+    return changes(geo::advance(front->owner->complex, front->state, next, crack_options(options)));
+  });
+}
+
+int front_crack(const FrontHandle& front) { return front->state.crack; }
+
+}  // namespace
+
+EMSCRIPTEN_BINDINGS(kerf_crack) {
+  emscripten::class_<Complex>("ComplexHandle").smart_ptr<ComplexHandle>("ComplexHandle");
+  emscripten::class_<Front>("FrontHandle").smart_ptr<FrontHandle>("FrontHandle");
+  emscripten::function("makeComplex", &make_complex);
+  emscripten::function("copyComplex", &copy_complex);
+  emscripten::function("score", &score);
+  emscripten::function("insert", &insert);
+  emscripten::function("planeSheet", &plane_sheet);
+  emscripten::function("surface", &surface);
+  emscripten::function("undo", &undo);
+  emscripten::function("counts", &counts);
+  emscripten::function("checkComplex", &check);
+  emscripten::function("pieces", &pieces);
+  emscripten::function("bonds", &bonds);
+  emscripten::function("hierarchy", &hierarchy);
+  emscripten::function("savePieces", &save_pieces);
+  emscripten::function("beginFront", &begin_front);
+  emscripten::function("advance", &advance);
+  emscripten::function("frontCrack", &front_crack);
+}
+
+}  // namespace kerf_js

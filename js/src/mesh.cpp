@@ -1,0 +1,214 @@
+// Meshes: made of arrays and files, measured, checked, repaired, saved.
+#include <malloc.h>
+
+#include <sstream>
+
+#include <kerf/check.h>
+#include <kerf/export.h>
+#include <kerf/files.h>
+#include <kerf/pieces.h>
+#include <kerf/repair.h>
+#include "bind.h"
+
+namespace kerf_js {
+namespace {
+
+// Values of corners: one row for each corner of each face, or one for each vertex.
+template <class Value>
+std::vector<std::array<Value, 3>> corners_from(const val& given, const char* name, const geo::TriangleMesh& mesh) {
+  constexpr std::size_t width = Value::RowsAtCompileTime;
+  if (!has(given, name)) return {};
+  const auto numbers = numbers_from<double>(given[name]);
+  const bool by_vertex = numbers.size() == width * mesh.vertices.size();
+  if (!by_vertex && numbers.size() != 3 * width * mesh.triangles.size())
+    throw geo::InputError(std::string(name) + ": give " + std::to_string(width) +
+                          " numbers for each vertex, or for each corner of each face");
+  std::vector<std::array<Value, 3>> corners(mesh.triangles.size());
+  for (std::size_t f = 0; f < corners.size(); ++f)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t row = by_vertex ? mesh.triangles[f][k] : 3 * f + k;
+      for (std::size_t i = 0; i < width; ++i) corners[f][k][static_cast<Eigen::Index>(i)] = numbers[width * row + i];
+    }
+  return corners;
+}
+
+template <class Value>
+val corners_to(const std::vector<std::array<Value, 3>>& corners) {
+  if (corners.empty()) return val::undefined();
+  constexpr std::size_t width = Value::RowsAtCompileTime;
+  return array_of(corners[0][0].data(), 3 * width * corners.size());
+}
+
+void read_groups(const val& given, geo::TriangleMesh& mesh) {
+  if (!has(given, "groups")) return;
+  const auto groups = numbers_from<std::int32_t>(given["groups"]);
+  const auto names = has(given, "groupNames") ? emscripten::vecFromJSArray<std::string>(given["groupNames"])
+                                              : std::vector<std::string>();
+  if (groups.size() != mesh.triangles.size()) throw geo::InputError("groups: give one for each face");
+  for (const auto group : groups)
+    if (group < 0 || static_cast<std::size_t>(group) >= names.size())
+      throw geo::InputError("groups: each is an index of groupNames");
+  mesh.attributes.group = groups;
+  mesh.attributes.group_names = names;
+}
+
+// vertices: Float64Array; faces: Uint32Array; attributes: uv, normals, colors, groups, groupNames.
+val make_mesh(const val& vertices, const val& faces, const val& attributes) {
+  return guarded([&] {
+    geo::TriangleMesh mesh;
+    mesh.vertices = points_from(vertices, "vertices");
+    const auto corners = numbers_from<std::uint32_t>(faces);
+    if (corners.size() % 3 != 0) throw geo::InputError("faces: give three vertices for each");
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      if (corners[i] >= mesh.vertices.size())
+        throw geo::InputError("faces: face " + std::to_string(i / 3) + " has the vertex " + std::to_string(corners[i]) +
+                              ", but there are " + std::to_string(mesh.vertices.size()));
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+      mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    mesh.attributes.uv = corners_from<geo::Vec2>(attributes, "uv", mesh);
+    mesh.attributes.normal = corners_from<geo::Vec3>(attributes, "normals", mesh);
+    mesh.attributes.color = corners_from<geo::Color>(attributes, "colors", mesh);
+    read_groups(attributes, mesh);
+    return handle(std::move(mesh));
+  });
+}
+
+// An array of the mesh by its name; undefined: it has none.
+val mesh_array(const MeshHandle& m, const std::string& name) {
+  const geo::TriangleMesh& mesh = m->mesh;
+  const geo::Attributes& attributes = mesh.attributes;
+  const auto unless_empty = [](const auto& numbers) { return numbers.empty() ? val::undefined() : array_of(numbers); };
+  if (name == "vertices") return array_of(mesh.vertices);
+  if (name == "faces")
+    return array_of(mesh.triangles.empty() ? nullptr : mesh.triangles.data()->data(), 3 * mesh.triangles.size());
+  if (name == "patch") return unless_empty(mesh.patch);
+  if (name == "source") return unless_empty(mesh.source);
+  if (name == "site") return unless_empty(mesh.site);
+  if (name == "groups") return unless_empty(attributes.group);
+  if (name == "groupNames") return val::array(attributes.group_names);
+  if (name == "uv") return corners_to(attributes.uv);
+  if (name == "normals") return corners_to(attributes.normal);
+  if (name == "colors") return corners_to(attributes.color);
+  return val::undefined();
+}
+
+val mesh_measures(const MeshHandle& m) {
+  const geo::MassProperties mass = geo::mass_properties(m->mesh);
+  const geo::Box3 box = geo::bounding_box(m->mesh);
+  val result = val::object();
+  result.set("volume", geo::signed_volume(m->mesh));
+  result.set("area", geo::area(m->mesh));
+  result.set("centroid", array_of(mass.centroid));
+  result.set("inertia", array_of(mass.inertia.data(), 9));
+  result.set("bounds", array_of(std::vector<geo::Vec3>{box.lo, box.hi}));
+  result.set("unit", m->mesh.unit);
+  return result;
+}
+
+val check_mesh(const MeshHandle& m) {
+  return guarded([&] {
+    const geo::SurfaceReport report = geo::check_surface(m->mesh, geo::SelfIntersections::find);
+    val result = val::object();
+    result.set("closed", report.closed);
+    result.set("manifold", report.manifold);
+    result.set("oriented", report.oriented);
+    result.set("degenerateFaces", double(report.degenerate_faces));
+    result.set("firstProblem", report.first_problem);
+    result.set("good", report.good());
+    return result;
+  });
+}
+
+val require_solid(const MeshHandle& m) {
+  return guarded([&] { geo::require_solid(m->mesh); });
+}
+
+val repaired(const MeshHandle& m, const val& options) {
+  return guarded([&] {
+    geo::RepairOptions o;
+    take(options, "weld", o.weld_distance, 0, 1e300);
+    o.smooth_fill = has(options, "smooth") && options["smooth"].as<bool>();
+    return handle(geo::repaired_solid(m->mesh, o));
+  });
+}
+
+val load(const val& bytes, const std::string& name) {
+  return guarded([&] {
+    geo::SurfaceFile file = geo::parse_surface(text_from(bytes), name);
+    val result = val::object();
+    result.set("notes", val::array(file.notes));
+    result.set("mesh", handle(std::move(file.mesh)));
+    return result;
+  });
+}
+
+val save(const MeshHandle& m, const std::string& format) {
+  return guarded([&] {
+    std::ostringstream out;
+    const geo::TriangleMesh& mesh = m->mesh;
+    if (format == "ply") {
+      geo::write_ply(out, mesh);
+    } else if (format == "obj") {
+      geo::write_obj(out, mesh);
+    } else if (format == "stl") {
+      geo::write_stl(out, mesh);
+    } else if (format == "off") {
+      geo::write_off(out, mesh);
+    } else if (format == "glb") {
+      const geo::MassProperties mass = geo::mass_properties(mesh);
+      geo::ChunkLabels labels;
+      labels.kind = "node";
+      labels.names = {"model"};
+      geo::write_glb(out, {{.mesh = mesh, .volume = mass.volume, .centroid = mass.centroid}}, {}, labels);
+    } else {
+      throw geo::InputError("save: '" + format + "' is none of ply, obj, glb, stl, off");
+    }
+    return bytes_of(std::move(out).str());
+  });
+}
+
+val hulls(const MeshHandle& m, int count, int corners) {
+  return guarded([&] {
+    val result = val::array();
+    for (geo::TriangleMesh& hull :
+         geo::convex_decomposition(m->mesh, static_cast<std::size_t>(count), static_cast<std::size_t>(corners)))
+      append(result, val(handle(std::move(hull))));
+    return result;
+  });
+}
+
+// Shapes: by name, with a size of the triangles.
+val shape(const std::string& name, const val& size, double fineness, const std::string& letter) {
+  return guarded([&] {
+    const int n = static_cast<int>(fineness);
+    if (name == "block") return handle(geo::make_block(point_from(size, "size"), fineness));
+    if (name == "sphere") return handle(geo::make_sphere(n));
+    if (name == "pumpkin") return handle(geo::make_pumpkin(n));
+    if (name == "apple") return handle(geo::make_apple(n));
+    if (name == "polyp") return handle(geo::make_polyp(n));
+    if (letter.size() != 1) throw geo::InputError("letter: give one capital letter");
+    return handle(geo::make_letter(letter[0], size[0].as<double>(), n));
+  });
+}
+
+// Bytes of the heap that are in use, for tests of leaks.
+double used_bytes() { return double(mallinfo().uordblks); }
+
+}  // namespace
+
+EMSCRIPTEN_BINDINGS(kerf_mesh) {
+  emscripten::class_<Mesh>("MeshHandle").smart_ptr<MeshHandle>("MeshHandle");
+  emscripten::function("makeMesh", &make_mesh);
+  emscripten::function("meshArray", &mesh_array);
+  emscripten::function("meshMeasures", &mesh_measures);
+  emscripten::function("checkMesh", &check_mesh);
+  emscripten::function("requireSolid", &require_solid);
+  emscripten::function("repaired", &repaired);
+  emscripten::function("load", &load);
+  emscripten::function("save", &save);
+  emscripten::function("hulls", &hulls);
+  emscripten::function("shape", &shape);
+  emscripten::function("usedBytes", &used_bytes);
+}
+
+}  // namespace kerf_js

@@ -1,0 +1,129 @@
+// The npm package as a program uses it: shapes, pieces, hulls, bonds, files, errors, memory.
+//   node check.mjs [NATIVE_OUTCOMES]
+import assert from "node:assert/strict";
+import kerf from "kerf";
+
+const k = await kerf();
+const near = (a, b, share = 1e-9) => assert.ok(Math.abs(a - b) <= share * Math.abs(b), `${a} is not ${b}`);
+const sum = (list) => list.reduce((total, x) => total + x, 0);
+const free = (list) => list.forEach((object) => object.delete());
+
+const tests = {
+  "a cube breaks into closed pieces whose volumes add up"() {
+    const cube = k.shapes.block([1, 1, 1]);
+    const pieces = cube.fracture(30, { seed: 7, hulls: true });
+    assert.equal(pieces.length, 30);
+    near(sum(pieces.map((piece) => piece.volume)), 1);
+    for (const piece of pieces) {
+      assert.ok(piece.check().good && piece.hulls.length >= 1);
+      assert.ok(piece.hulls[0].volume >= piece.volume * (1 - 1e-9));
+      assert.equal(piece.patch.length, piece.faces.length / 3);
+    }
+    free(pieces), cube.delete();
+  },
+  "a plane splits, and inner faces are a group of their own"() {
+    const cube = k.shapes.block([1, 1, 1]);
+    const halves = cube.split(k.plane([0, 0, 0.25], [0, 0, 1]));
+    near(halves[0].volume, 0.75), near(halves[1].volume, 0.25);
+    assert.ok(halves[0].groupNames.includes("crack"));
+    const shelf = halves[1].faces.filter((_, i) => halves[1].patch[Math.floor(i / 3)] !== 0);
+    assert.ok(shelf.length > 0 && shelf.every((v) => Math.abs(halves[1].vertices[3 * v + 2] - 0.25) < 1e-12));
+    free(halves), cube.delete();
+  },
+  "typed arrays go in and come out to the bit"() {
+    const vertices = new Float64Array([0, 0, 0, 1 / 3, 0, 0, 0, 1 / 7, 0, 0, 0, Math.PI]), faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    const solid = new k.Solid(vertices, faces, { uv: [[0, 0], [1, 0], [0, 1], [1, 1]], groups: [0, 0, 1, 0], groupNames: ["wall", "slope"] });
+    assert.deepEqual(solid.vertices, vertices);
+    assert.deepEqual([...solid.faces], faces.flat());
+    assert.equal(solid.uv.length, 4 * 3 * 2);
+    near(solid.volume, Math.PI / 3 / 7 / 6);
+    const pieces = solid.fracture(3, { pattern: "planes", axis: "z" });
+    assert.ok(pieces.every((piece) => piece.uv.length === 2 * piece.faces.length && piece.groupNames.includes("slope")));
+    free(pieces), solid.delete();
+  },
+  "files of each format come back"() {
+    const pumpkin = k.shapes.pumpkin(4);
+    for (const format of ["ply", "off", "obj", "stl", "glb"]) {
+      const again = k.load(pumpkin.save(format), format);
+      assert.ok(again instanceof k.Solid, format);
+      near(again.volume, pumpkin.volume, 1e-6);
+      if (format === "ply" || format === "off") assert.deepEqual(again.vertices, pumpkin.vertices);
+      again.delete();
+    }
+    const complex = pumpkin.crack(k.score(pumpkin, { pieces: 4 }));
+    const glb = complex.save("glb");
+    assert.equal(new TextDecoder().decode(glb.subarray(0, 4)), "glTF");
+    const json = JSON.parse(new TextDecoder().decode(glb.subarray(20, 20 + new DataView(glb.buffer).getUint32(12, true))));
+    assert.equal(json.nodes.filter(({ name }) => /^piece_\d+$/.test(name)).length, 4);
+    assert.ok(complex.bonds.length >= 3 && complex.bonds.every(({ area, normal }) => area > 0 && Math.abs(Math.hypot(...normal) - 1) < 1e-12));
+    assert.equal(complex.hierarchy(2)[0].volume.length, 1);
+    assert.equal(complex.check(), "");
+    complex.delete(), pumpkin.delete();
+  },
+  "a front cuts step by step, and a step can be undone"() {
+    const cube = k.shapes.block([1, 1, 1]), complex = cube.complex();
+    const line = (y) => [[-0.2, y, 0.51], [0.5, y, 0.49], [1.2, y, 0.5]];
+    const front = complex.front(line(-0.1));
+    assert.ok(front.advance(line(0.5)).newCrackFaces.length > 0);
+    const before = complex.faceCount;
+    front.advance(line(1.1));
+    assert.equal(complex.pieces().length, 2);
+    complex.undo();
+    assert.equal(complex.faceCount, before);
+    const swept = cube.split(new k.Front([line(-0.1), line(0.5), line(1.1)]));
+    assert.equal(swept.length, 2);
+    free(swept), front.delete(), complex.delete(), cube.delete();
+  },
+  "wrong input is an error with a sentence"() {
+    const fails = (work, name, words) => assert.throws(work, (error) => error instanceof k.KerfError && error.name === name && words.test(error.message));
+    const cube = k.shapes.block([1, 1, 1]);
+    fails(() => new k.Solid(cube.vertices, cube.faces.subarray(3)), "InputError", /open|hole/);
+    fails(() => new k.Mesh([0, 0], [0, 0, 0]), "InputError", /three numbers/);
+    fails(() => new k.Mesh([0, 0, NaN], [[0, 0, 0]]), "InputError", /finite/);
+    fails(() => new k.Mesh([0, 0, 0], [[0, 1, 0]]), "InputError", /vertex 1/);
+    fails(() => new k.Mesh([0, 0, 0], [[0, -1, 0]]), "InputError", /no index/);
+    fails(() => cube.fracture(0), "InputError", /pieces/);
+    fails(() => cube.fracture(3, { pattern: "vornoi" }), "InputError", /voronoi/);
+    fails(() => cube.fracture(3, { seed: -1 }), "InputError", /seed/);
+    fails(() => cube.split(k.plane([0, 0, 0], [0, 0, 0])), "InputError", /normal/);
+    fails(() => cube.split("z"), "InputError", /Plane/);
+    fails(() => k.load(new Uint8Array([1, 2, 3])), "InputError", /./);
+    fails(() => k.load("cube.obj"), "InputError", /bytes/);
+    fails(() => cube.save("fbx"), "InputError", /fbx/);
+    fails(() => k.shapes.block([1, -1, 1]), "InputError", /./);
+    fails(() => cube.complex().front([[0, 0, 0]]), "InputError", /two/);
+    const holes = new k.Mesh(cube.vertices, cube.faces.subarray(3));
+    assert.equal(holes.check().closed, false);
+    const mended = k.Solid.repaired(holes);
+    near(mended.volume, 1);
+    mended.delete(), holes.delete(), cube.delete();
+    fails(() => cube.volume, "InputError", /deleted/);
+    cube.delete();
+  },
+  "progress is told, stops a call, and passes errors on"() {
+    const cube = k.shapes.block([1, 1, 1]);
+    let told = 0;
+    k.score(cube, { pieces: 5, progress: () => void told++ }).delete();
+    assert.ok(told > 0);
+    assert.throws(() => k.score(cube, { progress: () => false }), { name: "Interrupted" });
+    assert.throws(() => k.score(cube, { progress() { throw new TypeError("mine"); } }), { name: "TypeError", message: "mine" });
+    cube.delete();
+  },
+  "memory is freed by delete(), and where nobody holds an object"() {
+    const round = () => {
+      const pumpkin = k.shapes.pumpkin(6), pieces = pumpkin.fracture(6, { hulls: true }), again = k.load(pieces[0].save("ply"));
+      assert.throws(() => new k.Solid(pumpkin.vertices, pumpkin.faces.subarray(3)));
+      free(pieces), again.delete(), pumpkin.delete();
+    };
+    round();
+    const before = k.usedBytes();
+    for (let i = 0; i < 10; i++) round();
+    assert.ok(k.usedBytes() - before < 4096, `${k.usedBytes() - before} bytes are left`);
+  },
+};
+
+for (const [name, test] of Object.entries(tests)) {
+  const started = performance.now();
+  test();
+  console.log(`${name}: ${(performance.now() - started).toFixed(0)} ms`);
+}

@@ -1,0 +1,53 @@
+// Simulations of the npm package: a blade parts a block, energies, what a program moves, memory.
+import assert from "node:assert/strict";
+import kerf from "kerf";
+
+const k = await kerf();
+const scene = `
+[body]
+mesh = "block"
+nodes = 120
+[material]
+young = 2e5
+density = 1000
+[ground]
+point = [0, 0, 0]
+[contact]
+self = true
+[time]
+step = 0.01
+frames = 4
+`;
+
+async function run() {
+  const block = k.shapes.block([1, 1, 1], { edge: 0.25 });
+  const simulation = await k.simulation(scene, { models: block, set: { "gravity": [0, 0, -1] } });
+  const knife = simulation.addBlade([[-1, 0, 0], [2, 0, 0]], [0, 0.5, 1.3]);
+  const grip = simulation.addGrip([-0.1, -0.1, -0.1], [1.1, 0.2, 0.1]);
+  let frames = 0;
+  for (const z of [1.0, 0.6, 0.2, -0.2]) {
+    knife.move([0, 0.5, z]);
+    const stats = simulation.step();
+    assert.ok(Number.isFinite(stats.elastic) && Number.isFinite(stats.kinetic) && stats.refused === 0);
+    frames++;
+  }
+  assert.equal(simulation.frame, frames);
+  assert.equal(simulation.pieceCount, 2);
+  const surface = simulation.surface(), made = new k.Mesh(surface.vertices, surface.faces);
+  assert.ok(made.check().closed && Math.abs(made.volume - 1) < 0.05);
+  assert.equal(simulation.positions.length, simulation.stress.length * 3);
+  assert.ok(Math.max(...simulation.stress) > 0);
+  grip.end(), simulation.change({ young: 1e5, gravity: [0, 0, 0] });
+  simulation.step();
+  assert.equal(new TextDecoder().decode(simulation.save("ply").subarray(0, 3)), "ply");
+  assert.throws(() => simulation.blade(7).move([0, 0, 0]), /blade 7/);
+  made.delete(), simulation.delete(), block.delete();
+  return simulation.constructor.usedBytes();
+}
+
+await run();
+const before = await run();
+const after = await run();
+assert.ok(after - before < 4096, `${after - before} bytes are left`);
+await assert.rejects(k.simulation("[body]\nmesh = 1\n", {}), { name: "InputError" });
+console.log("simulation: a blade parts a block");

@@ -41,7 +41,7 @@ std::string fixed(const Decimal& d, double value) {
   if (d.exponent < 0) return "0." + std::string(static_cast<std::size_t>(-d.exponent - 1), '0') + d.digits;
   if (d.exponent < count - 1) {
     std::string text = d.digits;
-    return text.insert(static_cast<std::size_t>(d.exponent + 1), ".");
+    return text.insert(static_cast<std::size_t>(d.exponent + 1), 1, '.');
   }
   char whole[40];  // all digits of a whole number
   std::snprintf(whole, sizeof whole, "%.0f", value);
@@ -50,7 +50,7 @@ std::string fixed(const Decimal& d, double value) {
 
 std::string scientific(const Decimal& d) {
   std::string text = d.digits;
-  if (text.size() > 1) text.insert(1, ".");
+  if (text.size() > 1) text.insert(1, 1, '.');
   char exponent[16];
   std::snprintf(exponent, sizeof exponent, "e%c%02d", d.exponent < 0 ? '-' : '+', std::abs(d.exponent));
   return text + exponent;

@@ -11,6 +11,7 @@
 #include "live/loop.h"
 #include "live/memory.h"
 #include "live/page_text.h"
+#include "live/server.h"
 #include "sim/setup.h"
 #include "tool.h"
 

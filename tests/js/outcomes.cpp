@@ -1,8 +1,8 @@
 // Prints hashes of scores, cracks, pieces, hulls and progressive cuts, and energies of a run. Built
 // natively and for WebAssembly, it must print the same lines (tests/js/run).
-//   outcomes break MODEL...   three patterns each: a file, or a shape as pumpkin:8
-//   outcomes cut COUNT        progressive cuts of shapes
-//   outcomes run SCENE FRAMES energies and crossings of each frame
+//   outcomes break MODEL...       three patterns each
+//   outcomes cut COUNT MODEL...   progressive cuts of these in turn
+//   outcomes run SCENE FRAMES     energies and crossings of each frame
 #include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
@@ -14,20 +14,6 @@
 using namespace geo;
 
 namespace {
-
-TriangleMesh model(const std::string& name) {
-  const auto colon = name.find(':');
-  if (colon == std::string::npos) return read_surface(name).mesh;
-  const int size = std::atoi(name.c_str() + colon + 1);
-  const std::string shape = name.substr(0, colon);
-  if (shape == "pumpkin") return make_pumpkin(size);
-  if (shape == "apple") return make_apple(size);
-  if (shape == "polyp") return make_polyp(size);
-  if (shape == "sphere") return make_sphere(size);
-  if (shape == "block") return make_block({1, 0.7, 0.4}, 1.0 / size);
-  if (shape.size() == 1) return make_letter(shape[0], 0.3, size);
-  throw InputError(name + ": no shape of this name");
-}
 
 std::uint64_t hash_of(const TriangleMesh& mesh) {
   std::string bytes(reinterpret_cast<const char*>(mesh.vertices.data()), mesh.vertices.size() * sizeof(Vec3));
@@ -62,7 +48,7 @@ void print_pieces(const Complex& complex, const TriangleMesh& original, bool wit
 }
 
 void print_broken(const std::string& name) {
-  const TriangleMesh solid = model(name);
+  const TriangleMesh solid = read_surface(name).mesh;
   require_solid(solid);
   ScoreOptions options[3];
   options[0].pattern.pattern = Pattern::voronoi;
@@ -87,11 +73,10 @@ void print_broken(const std::string& name) {
   }
 }
 
-// A wavy front sweeps through a shape; it turns on its way, and may end in the material.
-void print_cut(int number) {
+// A wavy front sweeps through a model; it turns on its way, and may end in the material.
+void print_cut(int number, const std::string& name) {
   Random random(static_cast<std::uint64_t>(number) + 1);
-  const char* const shapes[] = {"pumpkin:8", "apple:9", "polyp:8", "R:14", "block:9"};
-  const TriangleMesh solid = model(shapes[number % 5]);
+  const TriangleMesh solid = read_surface(name).mesh;
   Complex complex = Complex::from_skin(solid);
   const Vec3 middle = complex.extent().center();
   const double size = complex.extent().diagonal();
@@ -134,8 +119,8 @@ int main(int argc, char** argv) {
   try {
     if (job == "break")
       for (int i = 2; i < argc; ++i) print_broken(argv[i]);
-    else if (job == "cut" && argc == 3)
-      for (int i = 0; i < std::atoi(argv[2]); ++i) print_cut(i);
+    else if (job == "cut" && argc > 3)
+      for (int i = 0; i < std::atoi(argv[2]); ++i) print_cut(i, argv[3 + i % (argc - 3)]);
     else if (job == "run" && argc == 4)
       print_run(argv[2], std::atoi(argv[3]));
     else

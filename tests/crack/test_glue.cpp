@@ -94,8 +94,9 @@ TEST_CASE("a blade may cut glued walls before they open", "[glue]") {
     Scored s = random_score(random);
     const Vec3 middle = s.whole.extent().center(), normal = random.direction();
     const Vec3 u = 4 * normal.unitOrthogonal(), v = normal.cross(u);
-    const TriangleMesh plane{.vertices = {middle - u - v, middle + u - v, middle + u + v, middle - u + v},
-                             .triangles = {{0, 1, 2}, {0, 2, 3}}};
+    TriangleMesh plane;
+    plane.vertices = {middle - u - v, middle + u - v, middle + u + v, middle - u + v};
+    plane.triangles = {{0, 1, 2}, {0, 2, 3}};
     std::vector<std::uint32_t> all(s.glued.bonds.size());
     std::iota(all.begin(), all.end(), 0);
     insert_sheet(s.whole, plane, 1);
@@ -108,7 +109,9 @@ TEST_CASE("a blade may cut glued walls before they open", "[glue]") {
 
 TEST_CASE("a bond knows its cells, area, direction and place", "[glue]") {
   Complex block = Complex::from_skin(make_block({2, 1, 1}, 0.5));
-  const TriangleMesh wall{.vertices = {{0.7, -1, -1}, {0.7, 3, -1}, {0.7, -1, 3}}, .triangles = {{0, 1, 2}}};
+  TriangleMesh wall;
+  wall.vertices = {{0.7, -1, -1}, {0.7, 3, -1}, {0.7, -1, 3}};
+  wall.triangles = {{0, 1, 2}};
   insert_sheet(block, wall, 1);
   GluedBonds glued;
   REQUIRE(glue_crack(block, 1, glued) == 1);

@@ -258,7 +258,10 @@ TEST_CASE("snapping leaves the line of a front that has moved: no vertex beside 
     const bool is_left = (b - a).cross(beside - a).dot(top - a) > 0;
     const std::vector<Triangle> sides = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     const std::vector<Triangle> turned = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
-    const Complex k = Complex::from_skin({{a, b, beside, top}, is_left ? sides : turned});
+    TriangleMesh tetrahedron;
+    tetrahedron.vertices = {a, b, beside, top};
+    tetrahedron.triangles = is_left ? sides : turned;
+    const Complex k = Complex::from_skin(tetrahedron);
     const Vec3 end = random.below(2) == 0 ? b : Vec3(2, 0, 0);
     FrontState front = begin_front(std::vector<Vec3>{a, end}, false, 1);
     front.has_moved = true;

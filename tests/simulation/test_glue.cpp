@@ -118,10 +118,10 @@ TEST_CASE("pressure alone breaks nothing, and holds against shear", "[glue]") {
 TEST_CASE("a bond beside a broken one breaks at its toughness", "[glue]") {
   Complex block = Complex::from_skin(make_block({3, 1, 1}, 0.5));
   // Two walls that meet in an edge: three cells.
-  const TriangleMesh walls{
-      .vertices =
-          {{1, -1, -1}, {1, 3, -1}, {1, 3, 3}, {1, -1, 3}, {1, -1, 0.5}, {1, 3, 0.5}, {5, 3, 0.5}, {5, -1, 0.5}},
-      .triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}};
+  TriangleMesh walls;
+  walls.vertices = {{1, -1, -1},  {1, 3, -1},  {1, 3, 3},   {1, -1, 3},
+                    {1, -1, 0.5}, {1, 3, 0.5}, {5, 3, 0.5}, {5, -1, 0.5}};
+  walls.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
   insert_sheet(block, walls, 1);
   GluedBonds glued;
   REQUIRE(glue_crack(block, 1, glued) == 3);

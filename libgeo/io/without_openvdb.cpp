@@ -15,10 +15,9 @@ namespace {
 }  // namespace
 
 TriangleMesh read_volume(const std::string& path, const VolumeOptions&) {
-  throw InputError(
-      path +
-      ": volumes (.vdb) need OpenVDB, without which this build of Kerf was made; convert it to a mesh with "
-      "the tool kerf-repair of a full build");
+  throw InputError(path +
+                   ": volumes (.vdb) need OpenVDB, without which this build of Kerf was made; convert it to a mesh "
+                   "with a build that has it");
 }
 
 void write_level_set(const std::string& path, const TriangleMesh&, double, bool) {

@@ -57,7 +57,7 @@ class NearEdges {
     for (std::size_t t = 0; t < strip_.triangles.size(); ++t) {
       const auto& p = strip_.triangles[t].p;
       for (const Edge& edge : edges_near(t)) {
-        if (is_on_old_front(edge)) continue;
+        if (strip_.is_on_old_front(edge.from, edge.to)) continue;
         for (std::size_t k = 0; k < 3; ++k) {
           if (!strip_.fixed[p[k]]) add_near_point(edge, strip_.points[p[k]]);
           add_near_edge(edge, strip_.points[p[k]], strip_.points[p[(k + 1) % 3]]);
@@ -80,14 +80,6 @@ class NearEdges {
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     return edges;
-  }
-
-  // Whether an edge is on the line of the old front: the strip keeps that line whole.
-  bool is_on_old_front(const Edge& edge) const {
-    return std::any_of(strip_.old_front.begin(), strip_.old_front.end(), [&](const auto& ends) {
-      const Vec3 &p = strip_.points[ends.first], &q = strip_.points[ends.second];
-      return (p == edge.from && q == edge.to) || (p == edge.to && q == edge.from);
-    });
   }
 
   bool is_near_segment(const Vec3& p, const Vec3& from, const Vec3& to) const {

@@ -46,6 +46,13 @@ class StripBuilder {
 
 }  // namespace
 
+bool Strip::is_on_old_front(const Vec3& a, const Vec3& b) const {
+  return std::any_of(old_front.begin(), old_front.end(), [&](const auto& ends) {
+    const Vec3 &p = points[ends.first], &q = points[ends.second];
+    return (p == a && q == b) || (p == b && q == a);
+  });
+}
+
 Strip sweep(const FrontState& front, std::span<const Vec3> next) {
   StripBuilder builder;
   builder.strip.new_front.assign(next.begin(), next.end());
@@ -161,14 +168,6 @@ class Snapper {
     return static_cast<std::uint32_t>(strip_.points.size() - 1);
   }
 
-  // Whether ab is on the line of the old front. The last strip ends there, in K or in the air, and
-  // this one would come off it if ab went through a point beside that line.
-  bool is_on_old_front(std::uint32_t a, std::uint32_t b) const {
-    const auto& edges = strip_.old_front;
-    return std::find(edges.begin(), edges.end(), std::pair(a, b)) != edges.end() ||
-           std::find(edges.begin(), edges.end(), std::pair(b, a)) != edges.end();
-  }
-
   // The first edge that passes within reach of q and may be divided.
   std::optional<std::pair<std::uint32_t, std::uint32_t>> edge_near(const Vec3& q) const {
     for (const auto& t : strip_.triangles)
@@ -177,7 +176,7 @@ class Snapper {
         const Vec3 e = strip_.points[b] - strip_.points[a], w = q - strip_.points[a];
         const double along = e.dot(w), length = e.squaredNorm();
         if (along <= 0 || along >= length || e.cross(w).squaredNorm() > reach_ * reach_ * length) continue;
-        if (!is_on_old_front(a, b)) return {{a, b}};
+        if (!strip_.is_on_old_front(strip_.points[a], strip_.points[b])) return {{a, b}};
       }
     return {};
   }

@@ -29,6 +29,10 @@ struct Strip {
   /// Faces of K near triangle t: near[near_begin[t]..near_begin[t + 1]); see find_near().
   std::vector<FaceId> near;
   std::vector<std::uint32_t> near_begin;
+
+  /// Whether the edge between two positions is on the line of an old front that has moved. The last
+  /// strip ends there, in K or in the air: this one would come off it if the edge were divided.
+  bool is_on_old_front(const Vec3& a, const Vec3& b) const;
 };
 
 /// The strip of a step: two triangles per segment, more where contacts divide it; a standing point

@@ -93,6 +93,16 @@ bool flag_of(std::int32_t value, const char* name);
 /// A callback as the library takes it.
 geo::Progress progress_of(kerf_progress progress, void* user);
 
+/// Copies a vector to three numbers of the caller's.
+inline void copy_point(const geo::Vec3& from, double (&to)[3]) {
+  for (int i = 0; i < 3; ++i) to[i] = from[i];
+}
+/// Copies a matrix to nine numbers of the caller's, by rows.
+inline void copy_matrix(const geo::Mat3& from, double (&to)[9]) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) to[3 * i + j] = from(i, j);
+}
+
 /// Copies numbers to an array of the caller, and their count to `needed`. With a null array of
 /// length 0 there is the count alone. Throws ArgumentError where the array is too short.
 void copy_out(std::span<const double> values, double* out, std::size_t length, std::size_t* needed);

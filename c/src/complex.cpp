@@ -73,10 +73,8 @@ PiecesObject::PiecesObject(geo::PieceSet of) : Object(kind), set(std::move(of)) 
     bond.b = from.b;
     bond.area = from.area;
     bond.section = from.section;
-    for (int i = 0; i < 3; ++i) {
-      bond.normal[i] = from.normal[i];
-      bond.centroid[i] = from.centroid[i];
-    }
+    copy_point(from.normal, bond.normal);
+    copy_point(from.centroid, bond.centroid);
     bonds.push_back(bond);
   }
 }
@@ -300,10 +298,8 @@ kerf_status kerf_pieces_get(kerf_pieces pieces, size_t index, kerf_piece* piece)
     const geo::Chunk& from = piece_at(*use, index);
     const geo::MassProperties mass = geo::mass_properties(from.mesh);
     to.volume = from.volume;
-    for (int i = 0; i < 3; ++i) {
-      to.centroid[i] = from.centroid[i];
-      for (int j = 0; j < 3; ++j) to.inertia[3 * i + j] = mass.inertia(i, j);
-    }
+    copy_point(from.centroid, to.centroid);
+    copy_matrix(mass.inertia, to.inertia);
   });
 }
 

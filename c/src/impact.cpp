@@ -129,10 +129,8 @@ kerf_status kerf_breaking_part(kerf_breaking breaking, size_t index, kerf_part* 
     to.whole = from.whole ? 1 : 0;
     to.hulls = static_cast<std::uint32_t>(from.hulls.size());
     to.volume = mass.volume;
-    for (int i = 0; i < 3; ++i) {
-      to.centroid[i] = mass.centroid[i];
-      for (int j = 0; j < 3; ++j) to.inertia[3 * i + j] = mass.inertia(i, j);
-    }
+    copy_point(mass.centroid, to.centroid);
+    copy_matrix(mass.inertia, to.inertia);
   });
 }
 

@@ -151,11 +151,9 @@ kerf_status kerf_mesh_measures(kerf_mesh mesh, kerf_measures* measures) {
     if (box.empty()) throw geo::InputError("the mesh has no triangles to measure");
     to.volume = mass.volume;
     to.area = geo::area(use->mesh);
-    for (int i = 0; i < 3; ++i) {
-      to.low[i] = box.lo[i];
-      to.high[i] = box.hi[i];
-      to.centroid[i] = mass.centroid[i];
-    }
+    copy_point(box.lo, to.low);
+    copy_point(box.hi, to.high);
+    copy_point(mass.centroid, to.centroid);
   });
 }
 

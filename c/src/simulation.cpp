@@ -75,10 +75,6 @@ kerf_frame frame_of(const SimulationObject& simulation) {
   return to;
 }
 
-void copy_point(const geo::Vec3& from, double (&to)[3]) {
-  for (int i = 0; i < 3; ++i) to[i] = from[i];
-}
-
 // The force on an object in the last frame; zero before the first frame that had it.
 void give_force(const std::vector<geo::Vec3>& forces, std::uint32_t index, double* force) {
   required(force, "force");

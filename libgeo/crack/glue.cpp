@@ -1,13 +1,23 @@
-// glue_crack() and sheet_of() of kerf/glue.h.
+// Functions of kerf/glue.h.
 #include "kerf/glue.h"
 
 #include <map>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
 #include "kerf/pieces.h"
 
 namespace geo {
+namespace {
+
+double area_of(const GluedBond& bond, const std::vector<Vec3>& points) {
+  double area = 0;
+  for (const auto& [a, b, c] : bond.faces) area += 0.5 * (points[b] - points[a]).cross(points[c] - points[a]).norm();
+  return area;
+}
+
+}  // namespace
 
 void measure(GluedBond& bond, const std::vector<Vec3>& points) {
   bond.area = 0;
@@ -23,8 +33,8 @@ void measure(GluedBond& bond, const std::vector<Vec3>& points) {
   bond.normal.stableNormalize();
 }
 
-std::size_t glue_crack(Complex& complex, std::int32_t crack, GluedBonds& glued) {
-  const Pieces pieces = find_pieces(complex);
+std::vector<double> glue_crack(Complex& complex, std::int32_t crack, GluedBonds& glued) {
+  Pieces pieces = find_pieces(complex);
   std::map<std::pair<std::uint32_t, std::uint32_t>, GluedBond> bonds;
   std::unordered_map<VertexId, std::uint32_t> index;
   ComplexEdit edit;
@@ -52,7 +62,59 @@ std::size_t glue_crack(Complex& complex, std::int32_t crack, GluedBonds& glued) 
     glued.bonds.push_back(std::move(bond));
   }
   if (!edit.empty()) complex.apply(edit);
-  return bonds.size();
+  return std::move(pieces.volume);
+}
+
+void join_small_cells(GluedBonds& glued, std::size_t first, std::vector<double> volumes, double least) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, GluedBond> bonds;
+  for (std::size_t b = first; b < glued.bonds.size(); ++b)
+    bonds[{glued.bonds[b].a, glued.bonds[b].b}] = std::move(glued.bonds[b]);
+  std::vector<std::set<std::uint32_t>> neighbors(volumes.size());
+  for (const auto& [cells, bond] : bonds) {
+    if (cells.first == cells.second) continue;
+    neighbors[cells.first].insert(cells.second);
+    neighbors[cells.second].insert(cells.first);
+  }
+  // Faces of a bond run from its lower cell to its higher one.
+  const auto rename = [&](std::uint32_t from, std::uint32_t to, std::uint32_t other) {
+    GluedBond bond = std::move(bonds.extract(std::minmax(from, other)).mapped());
+    if ((from < other) != (to < other))
+      for (Triangle& face : bond.faces) std::swap(face[1], face[2]);
+    GluedBond& joined = bonds[std::minmax(to, other)];
+    joined.faces.insert(joined.faces.end(), bond.faces.begin(), bond.faces.end());
+    neighbors[other].erase(from);
+    neighbors[other].insert(to);
+    neighbors[to].insert(other);
+  };
+  std::set<std::pair<double, std::uint32_t>> small;
+  for (std::uint32_t cell = 0; cell < volumes.size(); ++cell)
+    if (volumes[cell] < least && !neighbors[cell].empty()) small.insert({volumes[cell], cell});
+  while (!small.empty()) {
+    const std::uint32_t cell = small.extract(small.begin()).value().second;
+    std::uint32_t into = cell;
+    double largest = -1;
+    for (const auto other : neighbors[cell]) {
+      const double area = area_of(bonds.at(std::minmax(cell, other)), glued.points);
+      if (area <= largest) continue;
+      largest = area;
+      into = other;
+    }
+    bonds.erase(std::minmax(cell, into));
+    bonds.erase({cell, cell});
+    neighbors[into].erase(cell);
+    for (const auto other : neighbors[cell])
+      if (other != into) rename(cell, into, other);
+    small.erase({volumes[into], into});
+    volumes[into] += volumes[cell];
+    if (volumes[into] < least && !neighbors[into].empty()) small.insert({volumes[into], into});
+  }
+  glued.bonds.resize(first);
+  for (auto& [cells, bond] : bonds) {
+    bond.a = cells.first;
+    bond.b = cells.second;
+    measure(bond, glued.points);
+    glued.bonds.push_back(std::move(bond));
+  }
 }
 
 TriangleMesh sheet_of(const GluedBonds& glued, std::span<const std::uint32_t> bonds) {

@@ -101,12 +101,13 @@ std::vector<Mat3> read_matrices(const KerfFile& file, const std::string& section
 }
 
 // The numbers of a bond that its faces do not give: cells, body, and whether it is broken; strength
-// and toughness.
+// and toughness; the traction that holds its broken wall: crack, peak and opening, and the largest
+// opening of each face so far.
 struct GluedNumbers {
-  std::vector<std::uint32_t> faces, bond_of_face, cells;
-  std::vector<double> limits;
+  std::vector<std::uint32_t> faces, bond_of_face, cells, cracks;
+  std::vector<double> limits, laws, reached, load;
 
-  explicit GluedNumbers(const GluedBonds& glued) {
+  explicit GluedNumbers(const GluedBonds& glued) : load{glued.load, glued.loading} {
     for (std::uint32_t b = 0; b < glued.bonds.size(); ++b) {
       const GluedBond& bond = glued.bonds[b];
       for (const Triangle& face : bond.faces) {
@@ -115,9 +116,41 @@ struct GluedNumbers {
       }
       cells.insert(cells.end(), {bond.a, bond.b, bond.body, std::uint32_t(bond.broken)});
       limits.insert(limits.end(), {bond.strength, bond.toughness});
+      const Cohesion& cohesion = bond.cohesion;
+      cracks.push_back(static_cast<std::uint32_t>(cohesion.crack));
+      laws.insert(laws.end(), {cohesion.peak, cohesion.opening});
+      reached.insert(reached.end(), cohesion.reached.begin(), cohesion.reached.end());
+      if (cohesion.crack == 0) reached.resize(reached.size() + bond.faces.size(), 0);
     }
   }
 };
+
+// `bond_of_face`: faces of a bond stand in their order. Older files have no tractions.
+void read_cohesion(const KerfFile& file, std::span<const std::uint32_t> bond_of_face, GluedBonds& glued) {
+  if (file.sections().count("run/glue_laws") == 0) return;
+  const auto cracks = file.read<std::uint32_t>("run/glue_cracks");
+  const auto load = file.read<double>("run/glue_load");
+  if (load.size() != 2 || !std::isfinite(load[0]) || !std::isfinite(load[1]))
+    file.fail("the load of bonds is no number");
+  glued.load = load[0];
+  glued.loading = load[1];
+  const auto laws = file.read<double>("run/glue_laws", 2), reached = file.read<double>("run/glue_reached");
+  if (cracks.size() != glued.bonds.size() || laws.size() != 2 * cracks.size() || reached.size() != bond_of_face.size())
+    file.fail("the sections of glued bonds have different lengths");
+  for (std::size_t f = 0; f < reached.size(); ++f) {
+    Cohesion& cohesion = glued.bonds[bond_of_face[f]].cohesion;
+    if (cracks[bond_of_face[f]] != 0) cohesion.reached.push_back(reached[f]);
+  }
+  for (std::size_t b = 0; b < cracks.size(); ++b) {
+    Cohesion& cohesion = glued.bonds[b].cohesion;
+    cohesion.crack = static_cast<std::int32_t>(cracks[b]);
+    cohesion.peak = laws[2 * b];
+    cohesion.opening = laws[2 * b + 1];
+    const bool is_law = cohesion.peak > 0 && cohesion.opening > 0 && std::isfinite(cohesion.peak * cohesion.opening);
+    const bool is_open = std::all_of(cohesion.reached.begin(), cohesion.reached.end(), [](double r) { return r > 0; });
+    if (cohesion.crack != 0 && (!is_law || !is_open)) file.fail("a broken bond has a traction that is not positive");
+  }
+}
 
 GluedBonds read_glued(const KerfFile& file) {
   GluedBonds glued;
@@ -146,6 +179,7 @@ GluedBonds read_glued(const KerfFile& file) {
     if (!(bond.strength > 0) || !(bond.toughness >= 0)) file.fail("a glued bond has no strength");
     measure(bond, glued.points);
   }
+  read_cohesion(file, of, glued);
   return glued;
 }
 
@@ -199,6 +233,10 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
     more.push_back(kerf_array("run/glue_bonds", std::span(glued.bond_of_face)));
     more.push_back(kerf_array("run/glue_cells", std::span(glued.cells), 4));
     more.push_back(kerf_array("run/glue_limits", std::span<const double>(glued.limits), 2));
+    more.push_back(kerf_array("run/glue_load", std::span<const double>(glued.load)));
+    more.push_back(kerf_array("run/glue_cracks", std::span(glued.cracks)));
+    more.push_back(kerf_array("run/glue_laws", std::span<const double>(glued.laws), 2));
+    more.push_back(kerf_array("run/glue_reached", std::span<const double>(glued.reached)));
   }
   if (!rotation.empty()) more.push_back(kerf_array("run/rotation", coordinates(rotation), 3));
   more.push_back({.name = "run/about", .dtype = "json", .shape = {text.size()}, .fill = [&text](KerfSink& sink) {

@@ -70,6 +70,12 @@ void read_strength(TomlTable& t, Strength& s) {
   t.get("grain", s.grain, 0, 1e12);
 }
 
+void read_breakage(TomlTable& t, Breakage& b) {
+  read_strength(t, b);
+  t.get("cells", b.cells, 0, 100000);
+  t.get("jagged", b.jagged, 0, 1);
+}
+
 // Reads a rotation [ax, ay, az, degrees], or a quaternion [w, x, y, z], which is taken to the bit.
 void read_rotation(TomlTable& t, Pose& place, const std::string& what) {
   const auto *node = t.find("rotation"), *exact = t.find("quaternion");
@@ -113,7 +119,7 @@ void read_body_table(TomlTable& t, Scene& s) {
            "'body.fracture' says how strong one body is; give the scene a [fracture], too, by which bodies break");
   s.fracture.per_body.push_back(s.fracture);
   t.section("fracture", [&](TomlTable& own) {
-    read_strength(own, s.fracture.per_body.back());
+    read_breakage(own, s.fracture.per_body.back());
     refuse_shared(own, "fracture", {"speed", "branching", "apart", "cracks", "cracks_per_step", "start", "off"});
   });
   for (const auto& v : t.rows("fixed", 6))
@@ -283,7 +289,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   top.section("material", [&](TomlTable& t) { read_material(t, s.material); });
   top.section("fracture", [&](TomlTable& t) {
     s.fracture.on = true;
-    read_strength(t, s.fracture);
+    read_breakage(t, s.fracture);
     t.get("speed", s.fracture.speed, 0, 1);
     t.get("branching", s.fracture.branching, 0, 1e6);
     t.get("apart", s.fracture.separation, 0.5, 1000);
@@ -300,7 +306,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     top.list("body", [&](TomlTable& t) { read_body_table(t, s); });
   // Without differences a look-up for each node is not needed.
   if (std::all_of(s.fracture.per_body.begin(), s.fracture.per_body.end(),
-                  [&](const Strength& own) { return own == s.fracture; }))
+                  [&](const Breakage& own) { return own == s.fracture; }))
     s.fracture.per_body.clear();
   top.section("ground", [&](TomlTable& t) {
     s.ground = true;

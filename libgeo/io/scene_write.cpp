@@ -65,6 +65,7 @@ class SceneWriter {
 
   void material(const Material& m, bool own);
   void strength(const Strength& s);
+  void breakage(const Breakage& b);
   void fracture(const FractureOptions& f);
   void body(const SceneBody& b, const Scene& s, std::size_t index);
   void keys(const Motion& motion);
@@ -102,9 +103,15 @@ void SceneWriter::strength(const Strength& s) {
   key("grain", s.grain);
 }
 
+void SceneWriter::breakage(const Breakage& b) {
+  strength(b);
+  whole("cells", static_cast<std::uint64_t>(b.cells));
+  key("jagged", b.jagged);
+}
+
 void SceneWriter::fracture(const FractureOptions& f) {
   table("[fracture]");
-  strength(f);
+  breakage(f);
   key("speed", f.speed);
   key("branching", f.branching);
   key("apart", f.separation);
@@ -141,7 +148,7 @@ void SceneWriter::body(const SceneBody& b, const Scene& s, std::size_t index) {
   }
   if (!s.fracture.per_body.empty()) {
     table("[body.fracture]");
-    strength(s.fracture.per_body.at(index));
+    breakage(s.fracture.per_body.at(index));
   }
 }
 

@@ -2,38 +2,16 @@
 // then assign velocities. Nodes that a crack inserts belong to the body of their donor.
 #include <algorithm>
 
-#include "geometry/bvh.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/simulation.h"
-#include "score/jagged.h"
-#include "simulation/bond_breaking.h"
 #include "simulation/crack_writer.h"
+#include "simulation/glued_walls.h"
 #include "simulation/next_crack.h"
 #include "simulation/scene_body.h"
-#include "surface/skin.h"
 
 namespace geo {
 namespace {
-
-// Divides the walls of a sheet so that they can follow the deformed material where they open:
-// triangles as large as cells cannot.
-void refine(TriangleMesh& walls, const Body& body) {
-  const TriangleBvh skin(corners_of(skin_of(body.surface)));
-  refine_walls(walls, skin, body.finest_spacing, body.finest_spacing);
-}
-
-// Forgets the bonds from `first` on that are not in a body: walls may reach into others.
-void keep_within(const TriangleMesh& body, std::size_t first, GluedBonds& glued) {
-  const TriangleBvh own(corners_of(body));
-  const auto is_elsewhere = [&](const GluedBond& bond) {
-    const auto& [a, b, c] = bond.faces.at(0);
-    return !own.inside((glued.points[a] + glued.points[b] + glued.points[c]) / 3);
-  };
-  auto& bonds = glued.bonds;
-  bonds.erase(std::remove_if(bonds.begin() + static_cast<std::ptrdiff_t>(first), bonds.end(), is_elsewhere),
-              bonds.end());
-}
 
 // Where the cracks of a scene go.
 struct Prescoring {
@@ -42,24 +20,29 @@ struct Prescoring {
   RunStart& run;
 };
 
+// An edit that brings the complex to one which has grown from it.
+CrackEdit edit_to(Complex scored) {
+  return
+      [scored = std::move(scored)](Complex& complex, CrackStats*) { return complex.apply(complex.difference(scored)); };
+}
+
 // The crack of a sheet; throws as insert_sheet(). Where it is glued, only its outline on the skin
 // is inserted, and its bonds are appended to the run's.
 CrackEdit sheet_edit(const Prescoring& to, const SceneScore& score, std::int32_t crack) {
   TriangleMesh walls;
   walls.vertices = score.front.steps[0];
   walls.triangles = score.front.triangles;
-  if (score.glue) refine(walls, to.run.body);
   Complex scored = to.run.body.surface;
-  insert_sheet(scored, walls, crack);
-  if (score.glue) {
-    GluedBonds& glued = to.run.state.glued;
-    const std::size_t first = glued.bonds.size();
-    glue_crack(scored, crack, glued);
-    keep_within(to.models.bodies.at(score.body), first, glued);
-    set_strength(glued, first, *score.glue, to.scene.fracture.seed, scored.extent().diagonal(), score.body);
-  }
-  return
-      [scored = std::move(scored)](Complex& complex, CrackStats*) { return complex.apply(complex.difference(scored)); };
+  if (score.glue)
+    glue_walls({.model = to.models.bodies.at(score.body),
+                .body = score.body,
+                .strength = *score.glue,
+                .spacing = to.run.body.finest_spacing,
+                .seed = to.scene.fracture.seed},
+               walls, crack, scored, to.run.state.glued);
+  else
+    insert_sheet(scored, walls, crack);
+  return edit_to(std::move(scored));
 }
 
 // Inserts the scene's prescored cracks: fronts step by step, sheets whole.
@@ -89,6 +72,28 @@ void prescore(const Prescoring& to, const Progress& progress) {
   }
 }
 
+// Glues the walls of cells in the bodies that break along them.
+void glue_cells(const Prescoring& to, const Progress& progress) {
+  if (!to.scene.fracture.on) return;
+  RunStart& run = to.run;
+  CrackWriter writer(run.body, run.state.body_index, {.seed = to.scene.seed});
+  FrameStats unused;
+  for (std::size_t b = 0; b < to.scene.bodies.size(); ++b) {
+    const Breakage& breakage = to.scene.fracture.of_body(b);
+    if (breakage.cells < 2) continue;
+    report(progress, "cells", b, to.scene.bodies.size());
+    Complex scored = run.body.surface;
+    glue_cells({.model = to.models.bodies[b],
+                .body = static_cast<std::uint32_t>(b),
+                .strength = breakage,
+                .spacing = run.body.finest_spacing,
+                .seed = to.scene.fracture.seed},
+               to.scene.fracture, next_crack(run.body.surface, run.state), scored, run.state.glued);
+    if (!writer.write(edit_to(std::move(scored)), unused))
+      throw GeometryError("the cells of '" + to.scene.bodies[b].name + "' cannot be made; change their number");
+  }
+}
+
 // Initial velocities: each body's own, and its spin about the centre of its nodes' box.
 void begin_motion(const Scene& scene, const Body& body, RunState& state) {
   const std::size_t n = body.nodes.size();
@@ -108,7 +113,9 @@ RunStart begin_run(const Scene& scene, const PlacedModels& models, const Progres
   RunStart run;
   run.body = build_scene_body(scene, models, run.state.body_index, progress);
   run.state.fronts.resize(scene.blades.size());
-  prescore({.scene = scene, .models = models, .run = run}, progress);
+  const Prescoring to{.scene = scene, .models = models, .run = run};
+  prescore(to, progress);
+  glue_cells(to, progress);
   begin_motion(scene, run.body, run.state);
   return run;
 }

@@ -18,15 +18,22 @@ class BondBreaker {
   /// The bonds are those of `state`, as they are now.
   BondBreaker(const Body& body, RunState& state, CrackWriter& writer);
 
+  /// Whether there are bonds, broken or not.
+  bool any() const { return !state_.glued.bonds.empty(); }
   /// Whether any bond holds.
   bool any_left() const;
-  /// Opens the walls of all bonds that break now, as one crack. Where that is refused, each half of
-  /// them, down to one bond, which is counted as refused and tried again in the next step. `solid`:
-  /// with its points up to date; `friction`: between the sides of a wall.
-  void step(const Solid& solid, double friction, FrameStats& stats);
+  /// Into how many equal steps a time step of dt seconds is divided: where bonds are about to break
+  /// in it, into those in which a pressure wave runs through half a wall, and `most` at most. A
+  /// wall that opens unloads its neighbours at that speed.
+  int division(const Solid& solid, double dt, int most) const;
+  /// Opens the walls of all bonds that break in a time step of dt seconds, as one crack. Where that
+  /// is refused, each half of them, down to one bond, which is counted as refused and tried again in
+  /// the next step. `solid`: with its points up to date; `friction`: between the sides of a wall.
+  void step(const Solid& solid, double friction, double dt, FrameStats& stats);
 
  private:
-  void open(std::span<const std::uint32_t> bonds, FrameStats& stats);
+  void open(std::span<const std::uint32_t> bonds, const Solid& solid, double dt, FrameStats& stats);
+  const Material& material_of(const GluedBond& bond, const Solid& solid) const;
 
   const Body& body_;
   RunState& state_;

@@ -36,17 +36,21 @@ double BondBreaking::limit(const GluedBonds& glued, std::uint32_t bond) const {
   return std::min(own.strength, stress_of_toughness(own.toughness, std::sqrt(own.area)));
 }
 
-std::vector<std::uint32_t> BondBreaking::overloaded(const GluedBonds& glued, std::span<const BondLoad> loads,
-                                                    double friction) const {
+std::vector<double> BondBreaking::ratios(const GluedBonds& glued, std::span<const BondLoad> loads,
+                                         double friction) const {
   std::vector<double> ratio(loads.size(), 0);
   for (std::uint32_t b = 0; b < loads.size(); ++b)
     if (!glued.bonds[b].broken) ratio[b] = loads[b].effective(friction) / limit(glued, b);
+  return ratio;
+}
+
+std::vector<std::uint32_t> BondBreaking::overloaded(std::span<const double> ratio) const {
   // The lower bond comes first where ratios are equal.
   const auto is_before = [&](std::uint32_t a, std::uint32_t b) {
     return ratio[a] != ratio[b] ? ratio[a] > ratio[b] : a < b;
   };
   std::vector<std::uint32_t> result;
-  for (std::uint32_t b = 0; b < loads.size(); ++b)
+  for (std::uint32_t b = 0; b < ratio.size(); ++b)
     if (ratio[b] > 1 && std::none_of(neighbors_[b].begin(), neighbors_[b].end(),
                                      [&](std::uint32_t o) { return ratio[o] > 1 && is_before(o, b); }))
       result.push_back(b);

@@ -23,11 +23,14 @@ class BondBreaking {
   /// reaches that, over the width √A of the wall (stress_of_toughness()).
   double limit(const GluedBonds& glued, std::uint32_t bond) const;
 
+  /// The traction of each bond over its limit; 0 where it is broken. `friction`: see
+  /// BondLoad::effective().
+  std::vector<double> ratios(const GluedBonds& glued, std::span<const BondLoad> loads, double friction) const;
+
   /// The bonds that break now, the most loaded one first: those whose traction exceeds their limit,
   /// and by more than that of each neighbour. A neighbour may break later, when the stress around
-  /// the opened wall has fallen. `friction`: see BondLoad::effective().
-  std::vector<std::uint32_t> overloaded(const GluedBonds& glued, std::span<const BondLoad> loads,
-                                        double friction) const;
+  /// the opened wall has fallen. `ratio`: ratios().
+  std::vector<std::uint32_t> overloaded(std::span<const double> ratio) const;
 
  private:
   std::vector<std::vector<std::uint32_t>> neighbors_;  // by bond, ascending

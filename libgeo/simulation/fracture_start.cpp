@@ -63,7 +63,8 @@ std::vector<CrackStart> find_starts(const Body& body, const std::vector<Mat3>& s
   std::vector<CrackStart> over;
   for (std::size_t i = 0; i < stress.size(); ++i) {
     const Vec3& x = body.nodes.position[i];
-    const Strength& own = fracture.at_node(body_index, i);
+    const Breakage& own = fracture.at_node(body_index, i);
+    if (!own.has_fronts()) continue;
     const double strength = own.strength * strength_factor(own, fracture.seed, diagonal, x);
     // The norm bounds the eigenvalues: few nodes need a decomposition.
     if (stress[i].norm() <= strength || !may_break(fracture, x)) continue;

@@ -40,6 +40,7 @@ FrameStats& FrameStats::operator+=(const FrameStats& o) {
   fracture.refused += o.fracture.refused;
   fracture.broken += o.fracture.broken;
   fracture.broken_area += o.fracture.broken_area;
+  fracture.spent += o.fracture.spent;
   contact += o.contact;
   sheet.deviation = std::max(sheet.deviation, o.sheet.deviation);
   sheet.turning = std::max(sheet.turning, o.sheet.turning);

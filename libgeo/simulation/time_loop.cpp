@@ -69,10 +69,14 @@ FrameStats TimeLoop::advance_frame(const Progress& progress) {
   apply_changes(state.frame * (1 / scene.frame_rate));
   const double frame_time = 1 / scene.frame_rate;
   const int steps = scene.steps_per_frame();
-  const auto time = [&](int s) { return (state.frame + double(s) / steps) * frame_time; };
+  const auto time = [&](double s) { return (state.frame + s / steps) * frame_time; };
   for (int s = 0; s < steps; ++s) {
     report(progress, "", static_cast<std::size_t>(s), static_cast<std::size_t>(steps));
-    step({.begin = time(s), .end = time(s + 1), .dt = frame_time / steps}, stats);
+    const int parts = division(frame_time / steps);
+    for (int p = 0; p < parts; ++p) {
+      const double end = p + 1 == parts ? s + 1 : s + double(p + 1) / parts;
+      step({.begin = time(s + double(p) / parts), .end = time(end), .dt = frame_time / steps / parts}, stats);
+    }
   }
   ++state.frame;
   state.surface = collisions_.living_positions(run_.body);
@@ -81,6 +85,12 @@ FrameStats TimeLoop::advance_frame(const Progress& progress) {
   stats.weight = weight_energy(run_.solid.nodes(), scene.gravity, state.motion.displacement);
   state.total += stats;
   return stats;
+}
+
+// Into how many parts a step is divided, because bonds are about to break in it.
+int TimeLoop::division(double dt) {
+  constexpr int most = 16;
+  return bonds_.any_left() ? bonds_.division(run_.solid.nodes(), dt, most) : 1;
 }
 
 void TimeLoop::step(const TimeStep& step, FrameStats& stats) {
@@ -94,7 +104,7 @@ void TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   run_.state.time = step.end;
   cut(step, stats);
   grow_cracks(step.dt, stats);
-  break_bonds(stats);
+  break_bonds(step.dt, stats);
   require_finite(run_.state);
 }
 
@@ -107,8 +117,10 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
   const State& motion = run_.state.motion;
   const auto begin = [&] {
     const Timed timed(stats.contact_seconds);
+    if (obstacles_.any() || bonds_.any()) collisions_.update_weights(run_.body, nodes, motion);
+    cohesion_.begin_step(run_.body, run_.state.glued, collisions_.weights());
+    if (!cohesion_.empty()) loads_.environment().contact.push_back(&cohesion_);
     if (obstacles_.any()) {
-      collisions_.update_weights(run_.body, nodes, motion);
       obstacles_.add_potentials({.scene = run_.scene,
                                  .body = run_.body,
                                  .solid = nodes,
@@ -136,6 +148,7 @@ void TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
                                            : solid.step_explicit(motion, step.dt, environment);
   const double share = step.dt * scene.frame_rate;
   loads_.end_step(step, share, motion, stats);
+  stats.fracture.spent += cohesion_.end_step(motion.displacement, run_.state.glued);
   obstacles_.add_reactions(motion, share, stats);
   stats.newton += static_cast<std::size_t>(report.newton);
   stats.cg += static_cast<std::size_t>(report.cg);
@@ -195,7 +208,8 @@ MovedBody TimeLoop::moved_body(const TimeStep& step) const {
 
 // Starts and grows cracks by stress, which is of the solid's points.
 void TimeLoop::grow_cracks(double dt, FrameStats& stats) {
-  if (!run_.scene.fracture.on || run_.state.time < run_.scene.fracture.start) return;
+  const FractureOptions& options = run_.scene.fracture;
+  if (!options.on || !options.any_fronts() || run_.state.time < options.start) return;
   const TimedRest rest(stats, &FrameStats::fracture_seconds);
   const auto bring_up_to_date = [&]() -> const Solid& {
     const Timed timed(stats.mechanics_seconds);
@@ -208,7 +222,7 @@ void TimeLoop::grow_cracks(double dt, FrameStats& stats) {
     bring_up_to_date();
     return true;
   };
-  step_fracture({.options = run_.scene.fracture,
+  step_fracture({.options = options,
                  .body_index = run_.state.body_index,
                  .body = run_.body,
                  .solid = bring_up_to_date(),
@@ -218,14 +232,14 @@ void TimeLoop::grow_cracks(double dt, FrameStats& stats) {
 }
 
 // Opens glued walls whose load is too high. Stress is of the solid's points.
-void TimeLoop::break_bonds(FrameStats& stats) {
-  if (!bonds_.any_left()) return;
+void TimeLoop::break_bonds(double dt, FrameStats& stats) {
+  if (!bonds_.any_left() || (run_.scene.fracture.on && run_.state.time < run_.scene.fracture.start)) return;
   const TimedRest rest(stats, &FrameStats::fracture_seconds);
   const auto solid = [&]() -> const Solid& {
     const Timed timed(stats.mechanics_seconds);
     return run_.solid.whole();
   };
-  bonds_.step(solid(), run_.scene.contact.friction, stats);
+  bonds_.step(solid(), run_.scene.contact.friction, dt, stats);
 }
 
 }  // namespace geo

@@ -9,6 +9,7 @@
 #include "kerf/simulation.h"
 #include "simulation/blade_cuts.h"
 #include "simulation/bond_breaker.h"
+#include "simulation/cohesive_walls.h"
 #include "simulation/collisions.h"
 #include "simulation/crack_writer.h"
 #include "simulation/node_loads.h"
@@ -33,6 +34,7 @@ class TimeLoop {
 
  private:
   void apply_changes(double time);
+  int division(double dt);
   void step(const TimeStep& step, FrameStats& stats);
   std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);
   void move_nodes(const TimeStep& step, FrameStats& stats);
@@ -40,7 +42,7 @@ class TimeLoop {
                     FrameStats& stats);
   void cut(const TimeStep& step, FrameStats& stats);
   void grow_cracks(double dt, FrameStats& stats);
-  void break_bonds(FrameStats& stats);
+  void break_bonds(double dt, FrameStats& stats);
   void hold_material(double time);
   MovedBody moved_body(const TimeStep& step) const;
 
@@ -52,6 +54,7 @@ class TimeLoop {
   CrackWriter writer_;
   BladeCuts cuts_;
   BondBreaker bonds_;
+  CohesiveWalls cohesion_;
 };
 
 }  // namespace geo

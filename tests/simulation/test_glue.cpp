@@ -124,7 +124,8 @@ TEST_CASE("a bond beside a broken one breaks at its toughness", "[glue]") {
   walls.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
   insert_sheet(block, walls, 1);
   GluedBonds glued;
-  REQUIRE(glue_crack(block, 1, glued) == 3);
+  glue_crack(block, 1, glued);
+  REQUIRE(glued.bonds.size() == 3);
   set_strength(glued, 0, Strength{.strength = 100, .toughness = 10, .variation = 0}, 1, 3, 0);
   const BondBreaking breaking(glued);
   for (std::uint32_t b = 0; b < 3; ++b) CHECK(breaking.limit(glued, b) == 100);
@@ -132,7 +133,7 @@ TEST_CASE("a bond beside a broken one breaks at its toughness", "[glue]") {
   std::vector<BondLoad> loads(3);
   loads[0].normal = 120;
   loads[1].normal = 130;
-  CHECK(breaking.overloaded(glued, loads, 0) == std::vector<std::uint32_t>{1});
+  CHECK(breaking.overloaded(breaking.ratios(glued, loads, 0)) == std::vector<std::uint32_t>{1});
   glued.bonds[1].broken = true;
   const double width = std::sqrt(glued.bonds[0].area);
   CHECK(breaking.limit(glued, 0) == Approx(10 * std::sqrt(2 / (std::numbers::pi * width))));

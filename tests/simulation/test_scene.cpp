@@ -59,7 +59,7 @@ TEST_CASE("strength: noise is bounded and repeatable, boxes exclude fracture, sp
   fracture.off.push_back({Vec3(-1, -1, -1), Vec3(0, 1, 1)});
   CHECK_FALSE(may_break(fracture, {0, 0, 0}));  // the border belongs to the box
   CHECK(may_break(fracture, {1e-9, 0, 0}));
-  fracture.per_body = {Strength{1, 2, 0, 0}, Strength{3, 4, 0, 0}};
+  fracture.per_body = {Breakage{{1, 2, 0, 0}}, Breakage{{3, 4, 0, 0}}};
   CHECK(fracture.at_node({0, 1, 1}, 2).toughness == 4);
 
   Material material;

@@ -71,6 +71,7 @@ std::string line_of(const FrameOutcome& o, std::size_t crossings) {
                      ",\"retreating\":" + std::to_string(o.stats.sheet.retreating) +
                      ",\"crumbs\":" + std::to_string(o.stats.sheet.crumbs) +
                      ",\"broken_area\":" + tool::number(o.stats.fracture.broken_area) +
+                     ",\"surface_energy\":" + tool::number(o.stats.fracture.spent) +
                      ",\"energy\":" + tool::number(o.stats.energy) + ",\"kinetic\":" + tool::number(o.stats.kinetic) +
                      ",\"weight\":" + tool::number(o.stats.weight) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < o.stats.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.stats.blade_force[b]);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -55,16 +56,27 @@ struct Motion {
 /// Resistance of a material to fracture.
 struct Strength {
   double strength = 1e4;   ///< Pa: largest principal stress, averaged over h, at which a crack starts
-  double toughness = 0;    ///< Pa √m: K_Ic at which a crack grows; 0: strength · √(π h/2), h at the front
+  double toughness = 0;    ///< Pa √m: K_Ic at which a crack grows; 0: strength · √(π h/2), h at the front, of cells
+                           ///< the finest spacing of nodes
   double variation = 0.2;  ///< both times max(0.05, 1 + variation · noise), noise in about [−1, 1]
   double grain = 0;        ///< length scale of the noise, model units; 0: a tenth of the diagonal of all bodies
   friend bool operator==(const Strength&, const Strength&) = default;
 };
 
-/// Parameters of fracture by stress. The inherited strength is the default of all bodies.
-struct FractureOptions : Strength {
+/// How a body breaks: by cracks that grow with fronts of their own, or along the walls of cells. Those
+/// enclose every piece before it comes off.
+struct Breakage : Strength {
+  int cells = 0;      ///< of a random tessellation of the body, whose walls break by their load; 0: fronts
+  double jagged = 0;  ///< height of the walls' bumps, as a fraction of the body's diagonal
+  /// Whether cracks have fronts.
+  bool has_fronts() const { return cells < 2; }
+  friend bool operator==(const Breakage&, const Breakage&) = default;
+};
+
+/// Parameters of fracture by stress. The inherited breakage is the default of all bodies.
+struct FractureOptions : Breakage {
   bool on = false;
-  std::vector<Strength> per_body;        ///< one for each body of the scene; empty: all have the default
+  std::vector<Breakage> per_body;        ///< one for each body of the scene; empty: all have the default
   double speed = 0.55;                   ///< largest crack speed over the Rayleigh wave speed
   double branching = 0;                  ///< a front branches above this ratio of stress to resistance; 0: never
   double separation = 4;                 ///< smallest distance between two crack starts, in node spacings
@@ -73,9 +85,16 @@ struct FractureOptions : Strength {
   double start = 0;                      ///< s: no crack starts or grows earlier
   std::vector<std::array<Vec3, 2>> off;  ///< boxes (lowest, highest corner) without fracture, material coordinates
   std::uint64_t seed = 1;                ///< of the noise
-  /// Strength at a node. `body_index`: per node, its body of the scene; read only with `per_body`.
-  const Strength& at_node(const std::vector<std::uint32_t>& body_index, std::size_t node) const {
-    return per_body.empty() ? *this : per_body[body_index[node]];
+  /// Whether any body has cracks with fronts.
+  bool any_fronts() const {
+    if (per_body.empty()) return has_fronts();
+    return std::any_of(per_body.begin(), per_body.end(), [](const Breakage& b) { return b.has_fronts(); });
+  }
+  /// How a body of the scene breaks.
+  const Breakage& of_body(std::size_t body) const { return per_body.empty() ? *this : per_body[body]; }
+  /// The same for the body of a node. `body_index`: per node, its body of the scene.
+  const Breakage& at_node(const std::vector<std::uint32_t>& body_index, std::size_t node) const {
+    return of_body(per_body.empty() ? 0 : body_index[node]);
   }
 };
 

@@ -59,6 +59,7 @@ struct FractureStats {
   std::size_t refused = 0;   ///< steps that could not be made
   std::size_t broken = 0;    ///< glued bonds broken
   double broken_area = 0;    ///< of these, undeformed, model units²
+  double spent = 0;          ///< energy that the tractions of broken bonds have taken, J
 };
 
 /// Shape of the sheets that blades cut. Largest values of the frame, or of the run.

@@ -82,7 +82,7 @@ void NewtonSolver::update_accuracy() {
   active_.maximum(correction, [&](std::size_t i) { return problem_.squared_in_spacings(at_.u[i] - predicted_[i], i); });
   active_.take_square_roots(correction);
   for (std::size_t p = 0; p < accuracy_.size(); ++p)
-    if (active_[p]) accuracy_[p] = StepProblem::accuracy_after(problem_.accuracy_in_contact(spacing[p]), correction[p]);
+    if (active_[p]) accuracy_[p] = problem_.accuracy_after(problem_.accuracy_in_contact(spacing[p]), correction[p]);
 }
 
 void NewtonSolver::linearise_stale() {

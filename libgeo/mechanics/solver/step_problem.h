@@ -31,13 +31,15 @@ struct StepProblem {
     return fall > 0 && fall < spacing ? accuracy * fall / spacing : accuracy;
   }
   /// The accuracy, in spacings, of an island whose nodes forces have moved by up to `correction`
-  /// spacings from where inertia or the prediction took them. Backward Euler's error in a time step
-  /// is about half of the correction, so beyond a tenth of a spacing the accuracy is relative to
-  /// it. A hundredth of a spacing is the most that it becomes so (docs/decisions/065, 087).
-  /// `touched`: accuracy_in_contact().
-  static double accuracy_after(double touched, double correction) {
+  /// spacings from where inertia or the prediction took them. It is that of contact, where that
+  /// correction is less than the fall which accuracy_in_contact() refers to; else it refers to the
+  /// correction instead, of which backward Euler's error in a time step is about half. Beyond a
+  /// tenth of a spacing it is coarser still, up to a hundredth of a spacing (docs/decisions/065,
+  /// 087, 104). `touched`: accuracy_in_contact().
+  double accuracy_after(double touched, double correction) const {
     constexpr double unit_correction = 0.1, loose_accuracy = 0.01;
-    return std::max(touched, std::min(touched * correction / unit_correction, loose_accuracy));
+    const double relative = std::max(accuracy, touched / unit_correction) * correction;
+    return std::max(touched, std::min(relative, loose_accuracy));
   }
   /// Tolerance of |d| (|d| + moved), in squared spacings, an estimate of the error that a direction
   /// d leaves: the Newton error grows with |d|², and with |d| times the distance moved since the

@@ -1,0 +1,158 @@
+// Faces keep the number of their crack when they are divided: a part belongs to the face of the
+// bond that is nearest to its middle.
+#include "simulation/cohesive_walls.h"
+
+#include <algorithm>
+#include <map>
+
+#include "geometry/bvh.h"
+#include "mechanics/terms/contact_law.h"
+
+namespace geo {
+namespace {
+
+// Time steps in which the traction falls to zero, at least: fewer would spend the energy too early or
+// too late.
+constexpr double steps_of_opening = 4;
+
+CohesiveLaw law_of(const Cohesion& cohesion) { return {.peak = cohesion.peak, .opening = cohesion.opening}; }
+
+}  // namespace
+
+// Two sides that were pulled with a traction, and are free, part by 2 σ / (ρ c) in a second, with c
+// the speed of pressure waves.
+CohesiveLaw CohesiveLaw::of(const GluedBond& bond, double limit, const Material& material, double dt) {
+  if (bond.toughness == 0) return {};
+  const double energy = bond.toughness * bond.toughness * (1 - material.poisson * material.poisson) / material.young;
+  const double impedance = std::sqrt(material.density * (material.lambda() + 2 * material.mu()));
+  const double opening = std::max(2 * energy / limit, steps_of_opening * dt * 2 * limit / impedance);
+  return {.peak = 2 * energy / opening, .opening = opening};
+}
+
+double CohesiveLaw::traction(double reached) const {
+  return std::max(0.0, peak * (opening - reached) / (opening - first()));
+}
+
+double CohesiveLaw::spent(double reached) const {
+  return 0.5 * peak * opening * (std::min(reached, opening) - first()) / (opening - first());
+}
+
+double CohesiveLaw::energy(double delta, double reached) const {
+  if (delta <= reached) return 0.5 * secant(delta, reached) * delta * delta;
+  const double end = std::min(delta, opening);
+  return 0.5 * traction(end) * end + spent(end) - spent(std::min(reached, opening));
+}
+
+double CohesiveLaw::secant(double delta, double reached) const {
+  const double largest = std::max(delta, reached);
+  return traction(largest) / largest;
+}
+
+void CohesiveWalls::find_faces(const Body& body, const GluedBonds& glued) {
+  faces_.clear();
+  std::vector<std::array<Vec3, 3>> corners;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> of;  // bond, and its face
+  std::map<std::int32_t, Box3> cracks;
+  for (std::uint32_t b = 0; b < glued.bonds.size(); ++b) {
+    const GluedBond& bond = glued.bonds[b];
+    if (!bond.cohesion.holds()) continue;
+    for (std::uint32_t f = 0; f < bond.faces.size(); ++f) {
+      const auto& [i, j, k] = bond.faces[f];
+      corners.push_back({glued.points[i], glued.points[j], glued.points[k]});
+      of.push_back({b, f});
+      for (const Vec3& x : corners.back()) cracks[bond.cohesion.crack].add(x);
+    }
+  }
+  if (corners.empty()) return;
+  const TriangleBvh walls(corners);
+  std::vector<FaceId> near;
+  for (const auto& [crack, box] : cracks) {
+    near.clear();
+    body.surface.faces_near(box, near);
+    for (const FaceId face : near) {
+      if (body.surface.face(face).crack != crack) continue;
+      const auto [a, b, c] = body.surface.corners(face);
+      const auto [bond, part] = of[walls.closest((a + b + c) / 3).triangle];
+      if (glued.bonds[bond].cohesion.crack != crack) continue;
+      faces_.push_back({.face = face, .bond = bond, .of = part, .area = 0.5 * (b - a).cross(c - a).norm()});
+    }
+  }
+}
+
+void CohesiveWalls::begin_step(const Body& body, const GluedBonds& glued, const SurfaceWeights& weights) {
+  if (crack_steps_ != body.crack_steps) find_faces(body, glued);
+  crack_steps_ = body.crack_steps;
+  terms_.clear();
+  std::map<std::uint32_t, double> sum;
+  for (const Face& f : faces_) {
+    const GluedBond& bond = glued.bonds[f.bond];
+    const CohesiveLaw law = law_of(bond.cohesion);
+    const double reached = bond.cohesion.reached[f.of];
+    if (!(reached < law.opening)) continue;
+    sum.clear();
+    Vec3 offset = Vec3::Zero();
+    bool is_carried = true;
+    for (int which = 0; which < 2; ++which)
+      for (int k = 0; k < 3; ++k) {
+        const auto v = body.surface.surface_vertex({f.face, which}, k).index();
+        const double share = (which == 0 ? 1.0 : -1.0) / 3;
+        offset += share * weights.rotated(v);
+        is_carried = is_carried && !weights.stencil(v).empty();
+        for (const NodeWeight& w : weights.stencil(v)) sum[w.node] += share * w.weight;
+      }
+    if (!is_carried) continue;
+    Term term{
+        .stencil = {}, .offset = offset, .law = law, .area = f.area, .before = reached, .reached = reached, .at = f};
+    for (const auto& [node, weight] : sum)
+      if (weight != 0) term.stencil.push_back({node, weight});
+    terms_.push_back(std::move(term));
+  }
+}
+
+void CohesiveWalls::begin_substep(const std::vector<Vec3>& u, double from, double /*to*/) {
+  for (Term& t : terms_)
+    t.reached = from > 0 ? std::max(t.reached, (weighted_sum(t.stencil, u) + t.offset).norm()) : t.before;
+}
+
+double CohesiveWalls::end_step(const std::vector<Vec3>& u, GluedBonds& glued) {
+  double spent = 0;
+  for (const Term& t : terms_) {
+    const double opening = (weighted_sum(t.stencil, u) + t.offset).norm();
+    const double reached = std::max(t.reached, opening);
+    spent += t.area * (t.law.spent(reached) - t.law.spent(t.before));
+    double& largest = glued.bonds[t.at.bond].cohesion.reached[t.at.of];
+    largest = std::max(largest, reached);
+  }
+  return spent;
+}
+
+double CohesiveWalls::energy(std::size_t k, const Vec3& d) const {
+  const Term& t = terms_[k];
+  return t.area * t.law.energy((d + t.offset).norm(), t.reached);
+}
+
+Potential::Derivatives CohesiveWalls::derivatives(std::size_t k, const Vec3& d) const {
+  const Term& t = terms_[k];
+  const Vec3 opening = d + t.offset;
+  const double delta = opening.norm(), secant = t.area * t.law.secant(delta, t.reached);
+  Derivatives result{.force = -secant * opening, .hessian = secant * Mat3::Identity()};
+  if (delta > t.reached) result.hessian -= secant / (delta * delta) * opening * opening.transpose();
+  return result;
+}
+
+double CohesiveWalls::stiffness_bound(std::size_t k) const {
+  const Term& t = terms_[k];
+  return t.area * t.law.secant(0, t.reached);
+}
+
+void CohesiveWalls::apply_impulse(const std::vector<Vec3>& u, double h, const std::vector<double>& inverse_mass,
+                                  std::vector<Vec3>& velocity) {
+  for (Term& t : terms_) {
+    const Vec3 opening = weighted_sum(t.stencil, u) + t.offset;
+    const double delta = opening.norm();
+    add_impulse(t.stencil, -h * t.area * t.law.secant(delta, t.reached) * opening, inverse_mass, velocity);
+    t.reached = std::max(t.reached, delta);
+  }
+}
+
+}  // namespace geo

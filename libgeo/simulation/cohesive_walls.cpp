@@ -19,13 +19,15 @@ CohesiveLaw law_of(const Cohesion& cohesion) { return {.peak = cohesion.peak, .o
 
 }  // namespace
 
-// Two sides that were pulled with a traction, and are free, part by 2 σ / (ρ c) in a second, with c
-// the speed of pressure waves.
+// Two sides that were pulled with a traction σ, and are free, part as far as the material beside them
+// is relieved of its strain: on both sides of the wall as far as a pressure wave has run, and about
+// as far as the wall is wide at last. That is 2 σ / (ρ c²) of this length.
 CohesiveLaw CohesiveLaw::of(const GluedBond& bond, double limit, const Material& material, double dt) {
   if (bond.toughness == 0) return {};
   const double energy = bond.toughness * bond.toughness * (1 - material.poisson * material.poisson) / material.young;
-  const double impedance = std::sqrt(material.density * (material.lambda() + 2 * material.mu()));
-  const double opening = std::max(2 * energy / limit, steps_of_opening * dt * 2 * limit / impedance);
+  const double modulus = material.lambda() + 2 * material.mu(), speed = std::sqrt(modulus / material.density);
+  const double relieved = std::min(speed * dt, std::sqrt(bond.area));
+  const double opening = std::max(2 * energy / limit, steps_of_opening * 2 * limit / modulus * relieved);
   return {.peak = 2 * energy / opening, .opening = opening};
 }
 

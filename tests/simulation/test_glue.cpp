@@ -141,7 +141,7 @@ TEST_CASE("a bond beside a broken one breaks at its toughness", "[glue]") {
 
 namespace {
 
-// A scored model thrown at the ground.
+// A model with a score or with cells, thrown at the ground.
 struct ThrownCase {
   Scene scene;
   TriangleMesh mesh;
@@ -162,6 +162,14 @@ ThrownCase thrown_case(std::uint64_t seed) {
   s.ground_point = {0, 0, bounding_box(c.mesh).lo.z() - 0.05};
   s.frame_rate = 120;
   s.dt = 1.0 / 360;
+  if (random.below(2) == 0) {
+    s.fracture.on = true;
+    s.fracture.cells = 8 + static_cast<int>(random.below(25));
+    s.fracture.jagged = random.below(3) == 0 ? 0.01 : 0;
+    s.fracture.strength = std::pow(10, random.uniform(3.8, 5.3));
+    s.fracture.seed = s.seed = seed;
+    return c;
+  }
   ScoreOptions score;
   score.pieces = 8 + static_cast<int>(random.below(25));
   score.pattern.seed = seed;

@@ -20,16 +20,18 @@ bool BondBreaker::any_left() const {
 }
 
 void BondBreaker::step(const Solid& solid, double friction, double dt, FrameStats& stats) {
-  if (!loads_ || crack_steps_ != body_.crack_steps) {
-    loads_.emplace(body_, solid, state_.glued);
-    crack_steps_ = body_.crack_steps;
-  }
-  const auto ratio = breaking_.ratios(state_.glued, loads_->at(solid, state_.motion, state_.glued), friction);
+  if (crack_steps_ != body_.crack_steps) loads_.update(body_, solid, state_.glued);
+  crack_steps_ = body_.crack_steps;
+  const auto ratio = breaking_.ratios(state_.glued, loads_.at(solid, state_.motion, state_.glued), friction);
   const double load = ratio.empty() ? 0 : *std::max_element(ratio.begin(), ratio.end());
   state_.glued.loading = (load - state_.glued.load) / dt;
   state_.glued.load = load;
+  const std::size_t before = stats.fracture.broken;
   const auto over = breaking_.overloaded(ratio);
   if (!over.empty()) open(over, solid, dt, stats);
+  if (stats.fracture.broken == before) return;
+  const auto thin = breaking_.ligaments(state_.glued, body_.finest_spacing * body_.finest_spacing);
+  if (!thin.empty()) open(thin, solid, dt, stats);
 }
 
 int BondBreaker::division(const Solid& solid, double dt, int most) const {

@@ -28,7 +28,9 @@ class BondBreaker {
   int division(const Solid& solid, double dt, int most) const;
   /// Opens the walls of all bonds that break in a time step of dt seconds, as one crack. Where that
   /// is refused, each half of them, down to one bond, which is counted as refused and tried again in
-  /// the next step. `solid`: with its points up to date; `friction`: between the sides of a wall.
+  /// the next step. Where some have broken, pieces that are joined by less than a node's share of
+  /// area part as well: h², with h the finest spacing. `solid`: with its points up to date; `friction`: between the
+  /// sides of a wall.
   void step(const Solid& solid, double friction, double dt, FrameStats& stats);
 
  private:
@@ -39,8 +41,8 @@ class BondBreaker {
   RunState& state_;
   CrackWriter& writer_;
   BondBreaking breaking_;
-  std::optional<BondLoads> loads_;
-  std::uint32_t crack_steps_ = 0;  // of the body, when loads_ were found
+  BondLoads loads_;
+  std::uint32_t crack_steps_ = ~0u;  // of the body, when loads_ were found
 };
 
 }  // namespace geo

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "simulation/strength.h"
@@ -28,11 +29,14 @@ BondBreaking::BondBreaking(const GluedBonds& glued) : neighbors_(glued.bonds.siz
   }
 }
 
+bool BondBreaking::is_at_crack(const GluedBonds& glued, std::uint32_t bond) const {
+  return std::any_of(neighbors_[bond].begin(), neighbors_[bond].end(),
+                     [&](std::uint32_t o) { return glued.bonds[o].broken; });
+}
+
 double BondBreaking::limit(const GluedBonds& glued, std::uint32_t bond) const {
   const GluedBond& own = glued.bonds[bond];
-  const bool is_at_crack = std::any_of(neighbors_[bond].begin(), neighbors_[bond].end(),
-                                       [&](std::uint32_t o) { return glued.bonds[o].broken; });
-  if (!is_at_crack || own.toughness == 0) return own.strength;
+  if (own.toughness == 0 || !is_at_crack(glued, bond)) return own.strength;
   return std::min(own.strength, stress_of_toughness(own.toughness, std::sqrt(own.area)));
 }
 
@@ -56,6 +60,42 @@ std::vector<std::uint32_t> BondBreaking::overloaded(std::span<const double> rati
       result.push_back(b);
   std::sort(result.begin(), result.end(), is_before);
   return result;
+}
+
+std::vector<std::uint32_t> BondBreaking::ligaments(const GluedBonds& glued, double least) const {
+  std::uint32_t cells = 0;
+  for (const GluedBond& bond : glued.bonds) cells = std::max({cells, bond.a + 1, bond.b + 1});
+  std::vector<std::uint32_t> group(cells);
+  std::iota(group.begin(), group.end(), 0u);
+  const auto root = [&](std::uint32_t cell) {
+    while (group[cell] != cell) cell = group[cell] = group[group[cell]];
+    return cell;
+  };
+  const auto holds_apart = [&](const GluedBond& bond) { return !bond.broken && root(bond.a) != root(bond.b); };
+  for (bool joined = true; joined;) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> area;
+    for (const GluedBond& bond : glued.bonds)
+      if (holds_apart(bond)) area[std::minmax(root(bond.a), root(bond.b))] += bond.area;
+    joined = false;
+    for (const auto& [groups, between] : area) {
+      if (between < least) continue;
+      group[root(groups.second)] = root(groups.first);
+      joined = true;
+    }
+  }
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t b = 0; b < glued.bonds.size(); ++b)
+    if (holds_apart(glued.bonds[b]) && is_at_crack(glued, b)) result.push_back(b);
+  return result;
+}
+
+void number_cells(GluedBonds& glued, std::size_t first) {
+  std::uint32_t next = 0;
+  for (std::size_t b = 0; b < first; ++b) next = std::max({next, glued.bonds[b].a + 1, glued.bonds[b].b + 1});
+  for (std::size_t b = first; b < glued.bonds.size(); ++b) {
+    glued.bonds[b].a += next;
+    glued.bonds[b].b += next;
+  }
 }
 
 void set_strength(GluedBonds& glued, std::size_t first, const Strength& glue, std::uint64_t seed, double diagonal,

@@ -32,9 +32,19 @@ class BondBreaking {
   /// the opened wall has fallen. `ratio`: ratios().
   std::vector<std::uint32_t> overloaded(std::span<const double> ratio) const;
 
+  /// The bonds beside broken ones that are no more than ligaments, ascending. Groups of cells are
+  /// joined where the area of the bonds between them is at least `least`, again and again; bonds
+  /// between the groups that remain are ligaments.
+  std::vector<std::uint32_t> ligaments(const GluedBonds& glued, double least) const;
+
  private:
+  bool is_at_crack(const GluedBonds& glued, std::uint32_t bond) const;
+
   std::vector<std::vector<std::uint32_t>> neighbors_;  // by bond, ascending
 };
+
+/// Gives the cells of the bonds from `first` on numbers that no earlier bond has.
+void number_cells(GluedBonds& glued, std::size_t first);
 
 /// Sets strength and toughness of bonds from `first` on: those of `glue` times strength_factor() at
 /// the centroid of each bond. `diagonal`: see there; `body`: whose bonds they are.

@@ -5,6 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string_view>
 
 #include "body/incremental_cache.h"
 #include "body/locate.h"
@@ -27,13 +29,6 @@ Plane plane_of(const Vec3& normal) {
   return axes;
 }
 
-// A point near a wall.
-struct NearPoint {
-  std::uint32_t point;
-  double weight;
-  Vec2 at;  // along the wall, about its centroid
-};
-
 // How far from a wall points count, in node spacings: about the support of a node, over which the
 // stress of points scatters. In a bar four nodes across, mean tractions are right to a hundredth,
 // and scatter looks like a bending of 8 % (docs/decisions/098).
@@ -49,6 +44,7 @@ struct FitWeights {
   Vec2 slope;
 };
 
+template <class NearPoint>
 std::vector<FitWeights> fit(const std::vector<NearPoint>& near) {
   double total = 0, spread = 0;
   for (const NearPoint& n : near) {
@@ -74,7 +70,37 @@ std::vector<FitWeights> fit(const std::vector<NearPoint>& near) {
   return weights;
 }
 
+// The crack faces of a complex with ids from `first` on.
+class NewCracks {
+ public:
+  NewCracks(const Complex& complex, std::uint32_t first) {
+    for (std::uint32_t f = first; f < complex.face_count(); ++f)
+      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack > 0) boxes_.push_back(complex.box(FaceId(f)));
+  }
+  bool meet(const Box3& box) const {
+    return std::any_of(boxes_.begin(), boxes_.end(), [&](const Box3& b) { return b.meets(box); });
+  }
+
+ private:
+  std::vector<Box3> boxes_;
+};
+
+// The box that holds a wall, the points near it, and all that may be between.
+Box3 surroundings_of(const GluedBond& bond, const std::vector<Vec3>& corners, double reach) {
+  Box3 box;
+  for (const Triangle& face : bond.faces)
+    for (const auto v : face) box.add(corners[v]);
+  return box.grown(reach);
+}
+
 }  // namespace
+
+// A point near a wall.
+struct BondLoads::NearPoint {
+  std::uint32_t point;  // the how manieth of those around the wall
+  double weight;
+  Vec2 at;  // along the wall, about its centroid
+};
 
 double BondLoad::effective(double friction) const {
   const double tension = normal + bending;
@@ -85,12 +111,13 @@ double BondLoad::effective(double friction) const {
 // The material points of a solid by position.
 class BondLoads::Surroundings {
  public:
-  Surroundings(const Body& body, const MaterialPoints& points) : body_(body), points_(points) {
+  Surroundings(const Body& body, const MaterialPoints& points) : body_(body) {
     for (std::uint32_t b = 0; b < points.blocks.size(); ++b)
       for (std::uint32_t i = 0; i < points.blocks[b].points.size(); ++i) {
         const MaterialPoint& point = points.blocks[b].points[i];
         if (point.quality == MomentQuality::singular) continue;
         position_.push_back(point.position);
+        volume_.push_back(point.volume);
         place_.push_back({.block = b, .index = i});
       }
     if (!position_.empty()) grid_ = NodeGrid(body.finest_spacing, position_);
@@ -98,37 +125,76 @@ class BondLoads::Surroundings {
 
   const std::vector<Point>& places() const { return place_; }
 
-  // The points near a bond's wall that see it.
-  std::vector<NearPoint> near(const GluedBond& bond, const std::vector<Vec3>& corners) const {
+  // How far from a bond's wall points count.
+  double reach_of(const GluedBond& bond) const {
     const auto node =
         body_.cache->grid.nearest(body_.nodes.position, bond.centroid, 1, ~0u, [](std::uint32_t) { return true; });
-    const double reach = averaging_reach * body_.nodes.spacing[node.at(0)];
+    return averaging_reach * body_.nodes.spacing[node.at(0)];
+  }
+
+  // The points around a bond's wall, ascending: more than those that count.
+  std::vector<std::uint32_t> around(const GluedBond& bond, const std::vector<Vec3>& corners, double reach) const {
     double radius = 0;
     for (const Triangle& face : bond.faces)
       for (const auto v : face) radius = std::max(radius, (corners[v] - bond.centroid).norm());
     std::vector<std::uint32_t> found;
     grid_.within(position_, bond.centroid, radius + reach, found);
+    return found;
+  }
+
+  // A hash of all that near() reads of points.
+  std::uint64_t hash_of(const std::vector<std::uint32_t>& points, double reach) const {
+    std::vector<double> values{reach};
+    for (const auto p : points)
+      values.insert(values.end(), {position_[p].x(), position_[p].y(), position_[p].z(), volume_[p]});
+    return std::hash<std::string_view>()(
+        {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
+  }
+
+  // Those of the points `around` that count: near a bond's wall, which they see.
+  std::vector<NearPoint> near(const GluedBond& bond, const std::vector<Vec3>& corners,
+                              const std::vector<std::uint32_t>& around, double reach) const {
     const Plane plane = plane_of(bond.normal);
+    const std::vector<Sphere> spheres = spheres_of(bond, corners);
     std::vector<NearPoint> result;
-    for (const auto p : found) {
-      const double distance = distance_seen(position_[p], bond, corners, reach);
+    for (std::uint32_t k = 0; k < around.size(); ++k) {
+      const auto p = around[k];
+      const double distance = distance_seen(position_[p], bond, corners, spheres, reach);
       if (distance >= reach) continue;
       const double share = distance / reach;
-      const double volume = points_.blocks[place_[p].block].points[place_[p].index].volume;
-      result.push_back({.point = p,
-                        .weight = volume * (1 - share * share),
+      result.push_back({.point = k,
+                        .weight = volume_[p] * (1 - share * share),
                         .at = plane.transpose() * (position_[p] - bond.centroid)});
     }
     return result;
   }
 
  private:
+  struct Sphere {
+    Vec3 center;
+    double radius;
+  };
+  static std::vector<Sphere> spheres_of(const GluedBond& bond, const std::vector<Vec3>& corners) {
+    std::vector<Sphere> spheres;
+    for (const auto& [a, b, c] : bond.faces) {
+      const Vec3 center = (corners[a] + corners[b] + corners[c]) / 3;
+      double radius = 0;
+      for (const auto v : {a, b, c}) radius = std::max(radius, (corners[v] - center).norm());
+      spheres.push_back({center, radius});
+    }
+    return spheres;
+  }
+
   // The distance of x from the faces; `reach` where it is farther, or does not see them.
-  double distance_seen(const Vec3& x, const GluedBond& bond, const std::vector<Vec3>& corners, double reach) const {
+  double distance_seen(const Vec3& x, const GluedBond& bond, const std::vector<Vec3>& corners,
+                       const std::vector<Sphere>& spheres, double reach) const {
     double nearest = reach;
     Vec3 seen_from;
-    for (const Triangle& face : bond.faces) {
-      const Vec3 &a = corners[face[0]], &b = corners[face[1]], &c = corners[face[2]];
+    for (std::size_t f = 0; f < bond.faces.size(); ++f) {
+      const double bound = nearest + spheres[f].radius;
+      if ((x - spheres[f].center).squaredNorm() > bound * bound) continue;
+      const auto& [i, j, k] = bond.faces[f];
+      const Vec3 &a = corners[i], &b = corners[j], &c = corners[k];
       const Vec3 foot = closest_point_on_triangle(x, a, b, c);
       const double distance = (foot - x).norm();
       if (distance >= nearest) continue;
@@ -139,39 +205,58 @@ class BondLoads::Surroundings {
   }
 
   const Body& body_;
-  const MaterialPoints& points_;
   std::vector<Vec3> position_;
+  std::vector<double> volume_;
   std::vector<Point> place_;
   NodeGrid grid_;
 };
 
-BondLoads::BondLoads(const Body& body, const Solid& solid, const GluedBonds& glued) : walls_(glued.bonds.size()) {
+void BondLoads::update(const Body& body, const Solid& solid, const GluedBonds& glued) {
   const Surroundings surroundings(body, SolidDiscretisation::of(solid).points);
-  std::vector<std::vector<NearPoint>> near(walls_.size());
-  if (!surroundings.places().empty())
-    parallel_for(walls_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t w = begin; w < end; ++w)
-        if (!glued.bonds[w].broken) near[w] = surroundings.near(glued.bonds[w], glued.points);
-    });
+  const NewCracks cracks(body.surface, faces_);
+  faces_ = body.surface.face_count();
+  walls_.resize(glued.bonds.size());
+  std::vector<std::vector<std::uint32_t>> around(walls_.size());
+  if (surroundings.places().empty()) return;
+  parallel_for(walls_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t w = begin; w < end; ++w) {
+      const GluedBond& bond = glued.bonds[w];
+      if (bond.broken) {
+        walls_[w] = {};
+        continue;
+      }
+      const double reach = surroundings.reach_of(bond);
+      around[w] = surroundings.around(bond, glued.points, reach);
+      const std::uint64_t hash = surroundings.hash_of(around[w], reach);
+      if (walls_[w].around == hash && !cracks.meet(surroundings_of(bond, glued.points, reach))) continue;
+      walls_[w] = wall_of(surroundings.near(bond, glued.points, around[w], reach), bond, glued.points);
+      walls_[w].around = hash;
+    }
+  });
   std::vector<std::uint32_t> index(surroundings.places().size(), ~0u);
-  for (const auto& list : near)
-    for (const NearPoint& n : list) index[n.point] = 0;
+  for (std::size_t w = 0; w < walls_.size(); ++w)
+    for (const Share& s : walls_[w].shares) index[around[w][s.near]] = 0;
+  points_.clear();
   for (std::size_t p = 0; p < index.size(); ++p) {
     if (index[p] != 0) continue;
     index[p] = static_cast<std::uint32_t>(points_.size());
     points_.push_back(surroundings.places()[p]);
   }
-  for (std::size_t w = 0; w < walls_.size(); ++w) {
-    if (near[w].empty()) continue;
-    const std::vector<FitWeights> weights = fit(near[w]);
-    for (std::size_t i = 0; i < weights.size(); ++i)
-      walls_[w].shares.push_back(
-          {.point = index[near[w][i].point], .mean = weights[i].mean, .slope = weights[i].slope});
-    const Plane plane = plane_of(glued.bonds[w].normal);
-    for (const Triangle& face : glued.bonds[w].faces)
-      for (const auto v : face)
-        walls_[w].corners.push_back(plane.transpose() * (glued.points[v] - glued.bonds[w].centroid));
-  }
+  for (std::size_t w = 0; w < walls_.size(); ++w)
+    for (Share& s : walls_[w].shares) s.point = index[around[w][s.near]];
+}
+
+BondLoads::Wall BondLoads::wall_of(const std::vector<NearPoint>& near, const GluedBond& bond,
+                                   const std::vector<Vec3>& corners) {
+  Wall wall;
+  if (near.empty()) return wall;
+  const std::vector<FitWeights> weights = fit(near);
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    wall.shares.push_back({.near = near[i].point, .point = 0, .mean = weights[i].mean, .slope = weights[i].slope});
+  const Plane plane = plane_of(bond.normal);
+  for (const Triangle& face : bond.faces)
+    for (const auto v : face) wall.corners.push_back(plane.transpose() * (corners[v] - bond.centroid));
+  return wall;
 }
 
 std::vector<BondLoads::PointStress> BondLoads::stresses(const Solid& solid, const State& state) const {

@@ -25,13 +25,15 @@ struct BondLoad {
 
 /// Finds tractions on the walls of bonds. The traction on a wall is the linear field along it that
 /// fits P N best at the material points around: P the first Piola-Kirchhoff stress, N the wall's
-/// normal. So it has the force and the moment of a beam's cross-section. Valid until the solid's
-/// points change.
+/// normal. So it has the force and the moment of a beam's cross-section.
 class BondLoads {
  public:
-  /// Takes the material points near each wall that see it. The solid's points
-  /// are up to date.
-  BondLoads(const Body& body, const Solid& solid, const GluedBonds& glued);
+  /// Knows no points yet.
+  BondLoads() = default;
+  /// Takes the material points near each wall that see it: of all walls at first, and then of those
+  /// near a new crack, or with other points near them. The solid's points are up to date; the
+  /// result is that of a new BondLoads. `glued`: the same bonds in each call.
+  void update(const Body& body, const Solid& solid, const GluedBonds& glued);
   /// The load on each bond; zero for broken ones, and where no point is near.
   std::vector<BondLoad> at(const Solid& solid, const State& state, const GluedBonds& glued) const;
 
@@ -39,11 +41,13 @@ class BondLoads {
   // The share of a point in the traction at a wall's centroid, and to its gradient along the
   // wall.
   struct Share {
+    std::uint32_t near;   // the how manieth of the points around the wall it is
     std::uint32_t point;  // index into points_
     double mean;
     Vec2 slope;
   };
   struct Wall {
+    std::uint64_t around = 0;  // hash of the points around
     std::vector<Share> shares;
     std::vector<Vec2> corners;  // about its centroid, in its plane
   };
@@ -54,11 +58,14 @@ class BondLoads {
   struct PointStress {
     Mat3 nominal, area;
   };
+  struct NearPoint;
   class Surroundings;
+  static Wall wall_of(const std::vector<NearPoint>& near, const GluedBond& bond, const std::vector<Vec3>& corners);
   std::vector<PointStress> stresses(const Solid& solid, const State& state) const;
 
   std::vector<Point> points_;  // that some wall uses, by block
   std::vector<Wall> walls_;    // by bond
+  std::uint32_t faces_ = 0;    // of the complex at the last update: newer ones have higher ids
 };
 
 }  // namespace geo

@@ -50,8 +50,8 @@ double CohesiveLaw::secant(double delta, double reached) const {
   return traction(largest) / largest;
 }
 
-void CohesiveWalls::find_faces(const Body& body, const GluedBonds& glued) {
-  faces_.clear();
+std::vector<CohesiveWalls::Face> CohesiveWalls::faces_of(const Body& body, const GluedBonds& glued) {
+  std::vector<Face> faces;
   std::vector<std::array<Vec3, 3>> corners;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> of;  // bond, and its face
   std::map<std::int32_t, Box3> cracks;
@@ -65,7 +65,7 @@ void CohesiveWalls::find_faces(const Body& body, const GluedBonds& glued) {
       for (const Vec3& x : corners.back()) cracks[bond.cohesion.crack].add(x);
     }
   }
-  if (corners.empty()) return;
+  if (corners.empty()) return faces;
   const TriangleBvh walls(corners);
   std::vector<FaceId> near;
   for (const auto& [crack, box] : cracks) {
@@ -76,39 +76,56 @@ void CohesiveWalls::find_faces(const Body& body, const GluedBonds& glued) {
       const auto [a, b, c] = body.surface.corners(face);
       const auto [bond, part] = of[walls.closest((a + b + c) / 3).triangle];
       if (glued.bonds[bond].cohesion.crack != crack) continue;
-      faces_.push_back({.face = face, .bond = bond, .of = part, .area = 0.5 * (b - a).cross(c - a).norm()});
+      faces.push_back({.face = face, .bond = bond, .of = part, .area = 0.5 * (b - a).cross(c - a).norm()});
     }
   }
+  return faces;
 }
 
 void CohesiveWalls::begin_step(const Body& body, const GluedBonds& glued, const SurfaceWeights& weights) {
-  if (crack_steps_ != body.crack_steps) find_faces(body, glued);
-  crack_steps_ = body.crack_steps;
-  terms_.clear();
-  std::map<std::uint32_t, double> sum;
-  for (const Face& f : faces_) {
-    const GluedBond& bond = glued.bonds[f.bond];
-    const CohesiveLaw law = law_of(bond.cohesion);
-    const double reached = bond.cohesion.reached[f.of];
-    if (!(reached < law.opening)) continue;
-    sum.clear();
-    Vec3 offset = Vec3::Zero();
-    bool is_carried = true;
-    for (int which = 0; which < 2; ++which)
-      for (int k = 0; k < 3; ++k) {
-        const auto v = body.surface.surface_vertex({f.face, which}, k).index();
-        const double share = (which == 0 ? 1.0 : -1.0) / 3;
-        offset += share * weights.rotated(v);
-        is_carried = is_carried && !weights.stencil(v).empty();
-        for (const NodeWeight& w : weights.stencil(v)) sum[w.node] += share * w.weight;
-      }
-    if (!is_carried) continue;
-    Term term{
-        .stencil = {}, .offset = offset, .law = law, .area = f.area, .before = reached, .reached = reached, .at = f};
-    for (const auto& [node, weight] : sum)
-      if (weight != 0) term.stencil.push_back({node, weight});
-    terms_.push_back(std::move(term));
+  if (crack_steps_ != body.crack_steps) {
+    terms_.clear();
+    for (const Face& f : faces_of(body, glued)) add_term(f, body, glued, weights);
+    crack_steps_ = body.crack_steps;
   }
+  // Parts of a divided face share what it remembers, as they do after a checkpoint.
+  for (Term& t : terms_) t.before = glued.bonds[t.at.bond].cohesion.reached[t.at.of];
+  std::erase_if(terms_, [](const Term& t) { return !(t.before < t.law.opening); });
+  for (Term& t : terms_) {
+    t.offset = Vec3::Zero();
+    for (int which = 0; which < 2; ++which)
+      for (int k = 0; k < 3; ++k)
+        t.offset +=
+            (which == 0 ? 1.0 : -1.0) / 3 * weights.rotated(body.surface.surface_vertex({t.at.face, which}, k).index());
+  }
+}
+
+void CohesiveWalls::add_term(const Face& at, const Body& body, const GluedBonds& glued, const SurfaceWeights& weights) {
+  const Cohesion& cohesion = glued.bonds[at.bond].cohesion;
+  const double reached = cohesion.reached[at.of];
+  if (!(reached < cohesion.opening)) return;
+  std::vector<NodeWeight> all;
+  for (int which = 0; which < 2; ++which)
+    for (int k = 0; k < 3; ++k) {
+      const Stencil stencil = weights.stencil(body.surface.surface_vertex({at.face, which}, k).index());
+      if (stencil.empty()) return;  // no node carries the vertex
+      for (const NodeWeight& w : stencil) all.push_back({w.node, (which == 0 ? 1.0 : -1.0) / 3 * w.weight});
+    }
+  std::stable_sort(all.begin(), all.end(), [](const NodeWeight& a, const NodeWeight& b) { return a.node < b.node; });
+  Term term{.stencil = {},
+            .offset = Vec3::Zero(),
+            .law = law_of(cohesion),
+            .area = at.area,
+            .before = reached,
+            .reached = reached,
+            .at = at};
+  for (const NodeWeight& w : all) {
+    if (term.stencil.empty() || term.stencil.back().node != w.node)
+      term.stencil.push_back(w);
+    else
+      term.stencil.back().weight += w.weight;
+  }
+  terms_.push_back(std::move(term));
 }
 
 void CohesiveWalls::begin_substep(const std::vector<Vec3>& u, double from, double /*to*/) {

@@ -44,8 +44,8 @@ struct CohesiveLaw {
 /// on each side.
 class CohesiveWalls : public Potential {
  public:
-  /// Finds the faces of all walls that hold yet, if the body has changed since the last call, and
-  /// begins a time step. `weights`: of the body's surface, up to date.
+  /// Begins a time step. Finds the faces of all walls that hold yet, if the body has changed since
+  /// the last call. `weights`: of the body's surface, up to date.
   void begin_step(const Body& body, const GluedBonds& glued, const SurfaceWeights& weights);
   /// Ends a time step at displacements u: remembers the openings. Returns the energy spent, J.
   double end_step(const std::vector<Vec3>& u, GluedBonds& glued);
@@ -82,11 +82,11 @@ class CohesiveWalls : public Potential {
     double before, reached;  // largest opening: before the step, and before the substep
     Face at;
   };
-  void find_faces(const Body& body, const GluedBonds& glued);
+  static std::vector<Face> faces_of(const Body& body, const GluedBonds& glued);
+  void add_term(const Face& at, const Body& body, const GluedBonds& glued, const SurfaceWeights& weights);
 
-  std::vector<Face> faces_;
   std::vector<Term> terms_;
-  std::uint32_t crack_steps_ = ~0u;  // of the body, when faces_ were found
+  std::uint32_t crack_steps_ = ~0u;  // of the body, when terms_ were made
 };
 
 }  // namespace geo

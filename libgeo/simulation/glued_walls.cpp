@@ -47,6 +47,7 @@ void glue_walls(const GluedBody& to, TriangleMesh walls, std::int32_t crack, Com
   const std::size_t first = glued.bonds.size();
   refine_walls(walls, skin, to.spacing, to.spacing);
   glue(skin, walls, crack, complex, glued);
+  number_cells(glued, first);
   set_strength(glued, first, to.strength, to.seed, complex.extent().diagonal(), to.body);
 }
 
@@ -77,6 +78,7 @@ void glue_cells(const GluedBody& to, const FractureOptions& fracture, std::int32
               bonds.end());
   Strength strength = to.strength;
   if (strength.toughness == 0) strength.toughness = strength.strength / stress_of_toughness(1, to.spacing);
+  number_cells(glued, first);
   set_strength(glued, first, strength, to.seed, complex.extent().diagonal(), to.body);
 }
 

@@ -11,6 +11,7 @@
 #include "kerf/files.h"
 #include "kerf/pieces.h"
 #include "kerf/simulation.h"
+#include "simulation/bond_breaking.h"
 #include "simulation/cohesive_walls.h"
 
 using namespace geo;
@@ -110,6 +111,33 @@ TEST_CASE("a bar that is pulled apart spends the energy of its toughness, and no
   CHECK(sim.state().glued.bonds[0].broken);
   CHECK(spent == Approx(energy * area).epsilon(0.01));
   CHECK_FALSE(sim.state().glued.bonds[0].cohesion.holds());
+}
+
+TEST_CASE("pieces that hang together by less than a node's share of area part", "[cells]") {
+  // Three cells in a row and one beside them; areas of the bonds between them.
+  GluedBonds glued;
+  const auto bond = [&](std::uint32_t a, std::uint32_t b, double area) {
+    const auto first = static_cast<std::uint32_t>(glued.points.size());
+    if (first == 0) glued.points.assign(20, Vec3::Zero());
+    // All walls meet in the edge of the points 0 and 1.
+    glued.bonds.push_back({.faces = {{0, 1, 2 + static_cast<std::uint32_t>(glued.bonds.size())}},
+                           .a = a,
+                           .b = b,
+                           .area = area,
+                           .strength = 1});
+  };
+  bond(0, 1, 0.1);
+  bond(1, 2, 3);
+  bond(2, 3, 0.6);
+  bond(1, 3, 0.6);
+  bond(4, 0, 0.2);
+  const BondBreaking breaking(glued);
+  CHECK(breaking.ligaments(glued, 1).empty());  // nothing is broken yet
+  glued.bonds[4].broken = true;
+  CHECK(breaking.ligaments(glued, 1) == std::vector<std::uint32_t>{0});
+  CHECK(breaking.ligaments(glued, 0.1).empty());
+  // Two bonds of 0.6 join cell 3 with the group of 1 and 2.
+  CHECK(breaking.ligaments(glued, 1.3) == std::vector<std::uint32_t>{0, 2, 3});
 }
 
 TEST_CASE("cells fill the body, and none is smaller than the material of a node", "[cells]") {

@@ -72,8 +72,9 @@ BondLoad load_after(const Scene& scene, const TriangleMesh& mesh, int frames) {
   Simulation sim(scene, mesh);
   for (int i = 0; i < frames; ++i) sim.advance_frame();
   REQUIRE(sim.state().glued.bonds.size() == 1);
-  return BondLoads(sim.body(), sim.solid(), sim.state().glued)
-      .at(sim.solid(), sim.state().motion, sim.state().glued)[0];
+  BondLoads loads;
+  loads.update(sim.body(), sim.solid(), sim.state().glued);
+  return loads.at(sim.solid(), sim.state().motion, sim.state().glued)[0];
 }
 
 }  // namespace

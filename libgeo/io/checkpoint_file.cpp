@@ -105,9 +105,10 @@ std::vector<Mat3> read_matrices(const KerfFile& file, const std::string& section
 // opening of each face so far.
 struct GluedNumbers {
   std::vector<std::uint32_t> faces, bond_of_face, cells, cracks;
-  std::vector<double> limits, laws, reached, load;
+  std::vector<std::uint32_t> pace;
+  std::vector<double> limits, laws, reached;
 
-  explicit GluedNumbers(const GluedBonds& glued) : load{glued.load, glued.loading} {
+  explicit GluedNumbers(const GluedBonds& glued) : pace{glued.halvings, glued.calm} {
     for (std::uint32_t b = 0; b < glued.bonds.size(); ++b) {
       const GluedBond& bond = glued.bonds[b];
       for (const Triangle& face : bond.faces) {
@@ -129,11 +130,10 @@ struct GluedNumbers {
 void read_cohesion(const KerfFile& file, std::span<const std::uint32_t> bond_of_face, GluedBonds& glued) {
   if (file.sections().count("run/glue_laws") == 0) return;
   const auto cracks = file.read<std::uint32_t>("run/glue_cracks");
-  const auto load = file.read<double>("run/glue_load");
-  if (load.size() != 2 || !std::isfinite(load[0]) || !std::isfinite(load[1]))
-    file.fail("the load of bonds is no number");
-  glued.load = load[0];
-  glued.loading = load[1];
+  const auto pace = file.read<std::uint32_t>("run/glue_pace");
+  if (pace.size() != 2 || pace[0] > most_halvings) file.fail("the time step of breaking bonds is none");
+  glued.halvings = pace[0];
+  glued.calm = pace[1];
   const auto laws = file.read<double>("run/glue_laws", 2), reached = file.read<double>("run/glue_reached");
   if (cracks.size() != glued.bonds.size() || laws.size() != 2 * cracks.size() || reached.size() != bond_of_face.size())
     file.fail("the sections of glued bonds have different lengths");
@@ -233,7 +233,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
     more.push_back(kerf_array("run/glue_bonds", std::span(glued.bond_of_face)));
     more.push_back(kerf_array("run/glue_cells", std::span(glued.cells), 4));
     more.push_back(kerf_array("run/glue_limits", std::span<const double>(glued.limits), 2));
-    more.push_back(kerf_array("run/glue_load", std::span<const double>(glued.load)));
+    more.push_back(kerf_array("run/glue_pace", std::span(glued.pace)));
     more.push_back(kerf_array("run/glue_cracks", std::span(glued.cracks)));
     more.push_back(kerf_array("run/glue_laws", std::span<const double>(glued.laws), 2));
     more.push_back(kerf_array("run/glue_reached", std::span<const double>(glued.reached)));

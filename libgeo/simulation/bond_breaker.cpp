@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
+#include "body/incremental_cache.h"
+#include "mechanics/solver/solid_discretisation.h"
 #include "simulation/cohesive_walls.h"
 #include "simulation/next_crack.h"
+#include "simulation/strength.h"
 
 namespace geo {
 
@@ -19,46 +23,79 @@ bool BondBreaker::any_left() const {
   return std::any_of(bonds.begin(), bonds.end(), [](const GluedBond& b) { return !b.broken; });
 }
 
-void BondBreaker::step(const Solid& solid, double friction, double dt, FrameStats& stats) {
-  if (crack_steps_ != body_.crack_steps) loads_.update(body_, solid, state_.glued);
+void BondBreaker::find_loads(const Solid& solid) {
+  if (crack_steps_ == body_.crack_steps) return;
+  loads_.update(body_, solid, state_.glued);
+  node_.clear();
+  for (const GluedBond& bond : state_.glued.bonds)
+    node_.push_back(
+        body_.cache->grid.nearest(body_.nodes.position, bond.centroid, 1, ~0u, [](std::uint32_t) { return true; })[0]);
   crack_steps_ = body_.crack_steps;
-  const auto ratio = breaking_.ratios(state_.glued, loads_.at(solid, state_.motion, state_.glued), friction);
-  const double load = ratio.empty() ? 0 : *std::max_element(ratio.begin(), ratio.end());
-  state_.glued.loading = (load - state_.glued.load) / dt;
-  state_.glued.load = load;
+}
+
+std::vector<double> BondBreaker::ratios(const Solid& solid, double friction) const {
+  return breaking_.ratios(state_.glued, loads_.at(solid, state_.motion, state_.glued), friction);
+}
+
+void BondBreaker::step(const Solid& solid, double friction, double dt, FrameStats& stats) {
+  find_loads(solid);
   const std::size_t before = stats.fracture.broken;
-  const auto over = breaking_.overloaded(ratio);
+  const auto over = breaking_.overloaded(ratios(solid, friction));
   if (!over.empty()) open(over, solid, dt, stats);
   if (stats.fracture.broken == before) return;
   const auto thin = breaking_.ligaments(state_.glued, body_.finest_spacing * body_.finest_spacing);
   if (!thin.empty()) open(thin, solid, dt, stats);
 }
 
-int BondBreaker::division(const Solid& solid, double dt, int most) const {
-  const GluedBonds& glued = state_.glued;
-  if (glued.load + std::max(0.0, glued.loading) * dt < 1) return 1;
-  double shortest = dt;
+bool BondBreaker::is_too_long(const Solid& solid, const State& before, const Vec3& gravity, double friction,
+                              double dt) {
+  if (dt <= shortest_step(solid)) return false;
+  find_loads(solid);
+  const std::vector<double> ratio = ratios(solid, friction);
+  return std::any_of(ratio.begin(), ratio.end(), [](double r) { return r > 1; }) ||
+         is_struck(solid, before, gravity, dt);
+}
+
+// Walls are as wide as the root of their mean area in a body.
+double BondBreaker::shortest_step(const Solid& solid) const {
   std::map<std::uint32_t, std::pair<double, std::size_t>> areas;  // per body: sum and number
-  for (const GluedBond& bond : glued.bonds) {
+  for (const GluedBond& bond : state_.glued.bonds) {
     areas[bond.body].first += bond.area;
     ++areas[bond.body].second;
   }
-  for (const GluedBond& bond : glued.bonds) {
-    const auto found = areas.find(bond.body);
-    if (found == areas.end()) continue;
-    const auto [area, count] = found->second;
-    areas.erase(found);
-    const Material& m = material_of(bond, solid);
-    const double speed = std::sqrt((m.lambda() + 2 * m.mu()) / m.density);
-    shortest = std::min(shortest, 0.5 * std::sqrt(area / double(count)) / speed);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& [body, area] : areas) {
+    const double width = std::sqrt(area.first / double(area.second));
+    shortest = std::min(shortest, 0.5 * width / pressure_wave_speed(material_of(body, solid)));
   }
-  return static_cast<int>(std::min<double>(most, std::ceil(dt / shortest)));
+  return shortest;
+}
+
+// Momentum that a component of the graph has got in the step, except from gravity, over its mass.
+bool BondBreaker::is_struck(const Solid& solid, const State& before, const Vec3& gravity, double dt) const {
+  const auto& component = SolidDiscretisation::of(solid).component;
+  std::vector<Vec3> momentum(SolidDiscretisation::of(solid).components, Vec3::Zero());
+  std::vector<double> mass(momentum.size(), 0);
+  for (std::size_t i = 0; i < component.size(); ++i) {
+    const double m = solid.mass(NodeId(static_cast<std::uint32_t>(i)));
+    momentum[component[i]] += m * (state_.motion.velocity[i] - before.velocity[i] - dt * gravity);
+    mass[component[i]] += m;
+  }
+  for (std::size_t b = 0; b < node_.size(); ++b) {
+    const GluedBond& bond = state_.glued.bonds[b];
+    if (bond.broken) continue;
+    const auto c = component[node_[b]];
+    const Material& material = material_of(bond.body, solid);
+    const double stress = material.density * pressure_wave_speed(material) * momentum[c].norm() / mass[c];
+    if (stress > breaking_.limit(state_.glued, static_cast<std::uint32_t>(b))) return true;
+  }
+  return false;
 }
 
 // All nodes of a body of the scene have the same material.
-const Material& BondBreaker::material_of(const GluedBond& bond, const Solid& solid) const {
+const Material& BondBreaker::material_of(std::uint32_t of, const Solid& solid) const {
   const auto& body = state_.body_index;
-  const auto node = static_cast<std::size_t>(std::find(body.begin(), body.end(), bond.body) - body.begin());
+  const auto node = static_cast<std::size_t>(std::find(body.begin(), body.end(), of) - body.begin());
   return solid.materials()[solid.materials().index(node < body.size() ? node : 0)];
 }
 
@@ -73,7 +110,7 @@ void BondBreaker::open(std::span<const std::uint32_t> bonds, const Solid& solid,
     std::vector<CohesiveLaw> laws;  // before any of them is broken: each limits its neighbours
     for (const auto b : bonds)
       laws.push_back(CohesiveLaw::of(state_.glued.bonds[b], breaking_.limit(state_.glued, b),
-                                     material_of(state_.glued.bonds[b], solid), dt));
+                                     material_of(state_.glued.bonds[b].body, solid), dt));
     for (std::size_t i = 0; i < bonds.size(); ++i) {
       GluedBond& bond = state_.glued.bonds[bonds[i]];
       bond.broken = true;

@@ -22,10 +22,12 @@ class BondBreaker {
   bool any() const { return !state_.glued.bonds.empty(); }
   /// Whether any bond holds.
   bool any_left() const;
-  /// Into how many equal steps a time step of dt seconds is divided: where bonds are about to break
-  /// in it, into those in which a pressure wave runs through half a wall, and `most` at most. A
-  /// wall that opens unloads its neighbours at that speed.
-  int division(const Solid& solid, double dt, int most) const;
+  /// Whether a time step of dt seconds from `before` to the present motion is too long for what
+  /// breaks in it: a bond is overloaded at its end, or a piece with bonds has been struck so hard
+  /// that a wave would break them (ρ c |Δv|), where the step is longer than a pressure wave takes
+  /// through half a wall. A wall that opens unloads its neighbours at that speed. `solid`: with its
+  /// points up to date; `friction`: between the sides of a wall.
+  bool is_too_long(const Solid& solid, const State& before, const Vec3& gravity, double friction, double dt);
   /// Opens the walls of all bonds that break in a time step of dt seconds, as one crack. Where that
   /// is refused, each half of them, down to one bond, which is counted as refused and tried again in
   /// the next step. Where some have broken, pieces that are joined by less than a node's share of
@@ -35,14 +37,19 @@ class BondBreaker {
 
  private:
   void open(std::span<const std::uint32_t> bonds, const Solid& solid, double dt, FrameStats& stats);
-  const Material& material_of(const GluedBond& bond, const Solid& solid) const;
+  const Material& material_of(std::uint32_t of, const Solid& solid) const;
+  void find_loads(const Solid& solid);
+  std::vector<double> ratios(const Solid& solid, double friction) const;
+  double shortest_step(const Solid& solid) const;
+  bool is_struck(const Solid& solid, const State& before, const Vec3& gravity, double dt) const;
 
   const Body& body_;
   RunState& state_;
   CrackWriter& writer_;
   BondBreaking breaking_;
   BondLoads loads_;
-  std::uint32_t crack_steps_ = ~0u;  // of the body, when loads_ were found
+  std::vector<std::uint32_t> node_;  // per bond: the nearest
+  std::uint32_t crack_steps_ = ~0u;  // of the body, when loads_ and node_ were found
 };
 
 }  // namespace geo

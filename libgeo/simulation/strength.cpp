@@ -31,6 +31,8 @@ double rayleigh_speed(const Material& m) {
   return std::sqrt(m.mu() / m.density) * (0.862 + 1.14 * m.poisson) / (1 + m.poisson);
 }
 
+double pressure_wave_speed(const Material& m) { return std::sqrt((m.lambda() + 2 * m.mu()) / m.density); }
+
 double stress_of_toughness(double toughness, double h) { return toughness * std::sqrt(2 / (std::numbers::pi * h)); }
 
 }  // namespace geo

@@ -22,6 +22,9 @@ bool may_break(const FractureOptions& fracture, const Vec3& x);
 /// c_s the speed of shear waves (Freund 1990, § 2.1).
 double rayleigh_speed(const Material& material);
 
+/// Speed of pressure waves at rest, model units per second.
+double pressure_wave_speed(const Material& material);
+
 /// Mean stress over a length h ahead of a crack tip at which the stress intensity K reaches
 /// `toughness`: the mean of K / √(2 π r) over 0 < r < h, K √(2 / (π h)) (Taylor 2007, line method).
 double stress_of_toughness(double toughness, double h);

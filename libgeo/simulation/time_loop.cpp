@@ -72,11 +72,7 @@ FrameStats TimeLoop::advance_frame(const Progress& progress) {
   const auto time = [&](double s) { return (state.frame + s / steps) * frame_time; };
   for (int s = 0; s < steps; ++s) {
     report(progress, "", static_cast<std::size_t>(s), static_cast<std::size_t>(steps));
-    const int parts = division(frame_time / steps);
-    for (int p = 0; p < parts; ++p) {
-      const double end = p + 1 == parts ? s + 1 : s + double(p + 1) / parts;
-      step({.begin = time(s + double(p) / parts), .end = time(end), .dt = frame_time / steps / parts}, stats);
-    }
+    advance(s, frame_time / steps, time, stats);
   }
   ++state.frame;
   state.surface = collisions_.living_positions(run_.body);
@@ -87,25 +83,63 @@ FrameStats TimeLoop::advance_frame(const Progress& progress) {
   return stats;
 }
 
-// Into how many parts a step is divided, because bonds are about to break in it.
-int TimeLoop::division(double dt) {
-  constexpr int most = 16;
-  return bonds_.any_left() ? bonds_.division(run_.solid.nodes(), dt, most) : 1;
+// Makes the s-th time step of a frame, halved as often as breaking bonds need it. A step that is
+// found to be too long is made again, shorter; after some calm steps, they are longer again.
+template <class Time>
+void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
+  constexpr std::uint32_t units = 1u << most_halvings, calm_steps = 4;
+  GluedBonds& glued = run_.state.glued;
+  for (std::uint32_t at = 0; at < units;) {
+    const std::uint32_t length = units >> glued.halvings;
+    const std::uint32_t next = at + length;
+    const double end = next == units ? s + 1 : s + double(next) / units;
+    const std::size_t broken = stats.fracture.broken;
+    if (!step({.begin = time(s + double(at) / units), .end = time(end), .dt = dt * length / units}, stats)) {
+      glued.halvings = std::min(glued.halvings + 2, most_halvings);
+      glued.calm = 0;
+      continue;
+    }
+    at = next;
+    glued.calm = stats.fracture.broken > broken ? 0 : glued.calm + 1;
+    if (glued.halvings == 0 || glued.calm < calm_steps || at % (2 * length) != 0) continue;
+    --glued.halvings;
+    glued.calm = 0;
+  }
 }
 
-void TimeLoop::step(const TimeStep& step, FrameStats& stats) {
+// False: the step is too long for what breaks in it. All is as before it.
+bool TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   run_.state.time = step.begin;
   apply_changes(step.begin);
-  const std::vector<Vec3> before = run_.state.motion.displacement;
+  const State start = run_.state.motion;
   loads_.begin_step(step, run_.solid.nodes(), run_.state.motion);
   std::optional<ContactStep> contact = begin_contact(step, stats);
-  move_nodes(step, stats);
-  move_surface(step, std::move(contact), before, stats);
+  const StepReport report = move_nodes(step, stats);
+  if (is_too_long(step, start, stats)) {
+    run_.state.motion = start;
+    run_.solid.whole().set_rotations(start);
+    return false;
+  }
+  take(report, step, stats);
+  move_surface(step, std::move(contact), start.displacement, stats);
   run_.state.time = step.end;
   cut(step, stats);
   grow_cracks(step.dt, stats);
   break_bonds(step.dt, stats);
   require_finite(run_.state);
+  return true;
+}
+
+bool TimeLoop::is_too_long(const TimeStep& step, const State& before, FrameStats& stats) {
+  if (!may_break()) return false;
+  const TimedRest rest(stats, &FrameStats::fracture_seconds);
+  return bonds_.is_too_long(run_.solid.whole(), before, run_.scene.gravity, run_.scene.contact.friction, step.dt);
+}
+
+// Whether bonds may break now.
+bool TimeLoop::may_break() const {
+  const FractureOptions& options = run_.scene.fracture;
+  return bonds_.any_left() && (!options.on || run_.state.time >= options.start);
 }
 
 // Adds obstacles and self-contact to the loads. The result owns the potential of self-contact.
@@ -137,7 +171,7 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
   return contact;
 }
 
-void TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
+StepReport TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
   const Timed timed(stats.mechanics_seconds);
   const Scene& scene = run_.scene;
   State& motion = run_.state.motion;
@@ -146,12 +180,18 @@ void TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
   const Environment& environment = loads_.environment();
   const StepReport report = scene.implicit ? solid.step_implicit(motion, step.dt, environment, scene.accuracy)
                                            : solid.step_explicit(motion, step.dt, environment);
-  const double share = step.dt * scene.frame_rate;
+  stats.newton += static_cast<std::size_t>(report.newton);
+  stats.cg += static_cast<std::size_t>(report.cg);
+  return report;
+}
+
+// The step is long enough: all that it has done counts.
+void TimeLoop::take(const StepReport& report, const TimeStep& step, FrameStats& stats) {
+  State& motion = run_.state.motion;
+  const double share = step.dt * run_.scene.frame_rate;
   loads_.end_step(step, share, motion, stats);
   stats.fracture.spent += cohesion_.end_step(motion.displacement, run_.state.glued);
   obstacles_.add_reactions(motion, share, stats);
-  stats.newton += static_cast<std::size_t>(report.newton);
-  stats.cg += static_cast<std::size_t>(report.cg);
   ++stats.steps;
   stats.energy = report.energy;
 }
@@ -233,7 +273,7 @@ void TimeLoop::grow_cracks(double dt, FrameStats& stats) {
 
 // Opens glued walls whose load is too high. Stress is of the solid's points.
 void TimeLoop::break_bonds(double dt, FrameStats& stats) {
-  if (!bonds_.any_left() || (run_.scene.fracture.on && run_.state.time < run_.scene.fracture.start)) return;
+  if (!may_break()) return;
   const TimedRest rest(stats, &FrameStats::fracture_seconds);
   const auto solid = [&]() -> const Solid& {
     const Timed timed(stats.mechanics_seconds);

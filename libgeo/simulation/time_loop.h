@@ -34,14 +34,18 @@ class TimeLoop {
 
  private:
   void apply_changes(double time);
-  int division(double dt);
-  void step(const TimeStep& step, FrameStats& stats);
+  template <class Time>
+  void advance(int step, double dt, const Time& time, FrameStats& stats);
+  bool step(const TimeStep& step, FrameStats& stats);
   std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);
-  void move_nodes(const TimeStep& step, FrameStats& stats);
+  StepReport move_nodes(const TimeStep& step, FrameStats& stats);
+  void take(const StepReport& report, const TimeStep& step, FrameStats& stats);
+  bool is_too_long(const TimeStep& step, const State& before, FrameStats& stats);
   void move_surface(const TimeStep& step, std::optional<ContactStep> contact, const std::vector<Vec3>& before,
                     FrameStats& stats);
   void cut(const TimeStep& step, FrameStats& stats);
   void grow_cracks(double dt, FrameStats& stats);
+  bool may_break() const;
   void break_bonds(double dt, FrameStats& stats);
   void hold_material(double time);
   MovedBody moved_body(const TimeStep& step) const;

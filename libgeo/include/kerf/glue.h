@@ -42,12 +42,15 @@ struct GluedBond {
   Cohesion cohesion = {};        ///< of the broken wall
 };
 
+/// How often a time step may be halved at most while bonds break.
+constexpr std::uint32_t most_halvings = 12;
+
 /// The glued walls of a body.
 struct GluedBonds {
   std::vector<Vec3> points;      ///< material coordinates; those on the skin are vertices of the complex
   std::vector<GluedBond> bonds;  ///< of all scores
-  double load = 0;               ///< at the end of the last time step: the largest traction over what it may be
-  double loading = 0;            ///< its change in a second, 1/s
+  std::uint32_t halvings = 0;    ///< how often the time step is halved now, because bonds break
+  std::uint32_t calm = 0;        ///< steps of this length since a bond has broken
 };
 
 /// Computes area, normal and centroid of a bond from its faces.

@@ -71,22 +71,27 @@ double BondBreaker::shortest_step(const Solid& solid) const {
   return shortest;
 }
 
-// Momentum that a component of the graph has got in the step, except from gravity, over its mass.
+// By how much the velocity of a component of the graph has changed in the step: of one that falls
+// freely or is at rest on others, not at all.
 bool BondBreaker::is_struck(const Solid& solid, const State& before, const Vec3& gravity, double dt) const {
   const auto& component = SolidDiscretisation::of(solid).component;
-  std::vector<Vec3> momentum(SolidDiscretisation::of(solid).components, Vec3::Zero());
-  std::vector<double> mass(momentum.size(), 0);
+  std::vector<Vec3> gained(SolidDiscretisation::of(solid).components, Vec3::Zero());
+  std::vector<double> mass(gained.size(), 0);
   for (std::size_t i = 0; i < component.size(); ++i) {
     const double m = solid.mass(NodeId(static_cast<std::uint32_t>(i)));
-    momentum[component[i]] += m * (state_.motion.velocity[i] - before.velocity[i] - dt * gravity);
+    gained[component[i]] += m * (state_.motion.velocity[i] - before.velocity[i]);
     mass[component[i]] += m;
   }
+  const auto change = [&](std::uint32_t c) {
+    const Vec3 velocity = gained[c] / mass[c];
+    return std::min(velocity.norm(), (velocity - dt * gravity).norm());
+  };
   for (std::size_t b = 0; b < node_.size(); ++b) {
     const GluedBond& bond = state_.glued.bonds[b];
     if (bond.broken) continue;
     const auto c = component[node_[b]];
     const Material& material = material_of(bond.body, solid);
-    const double stress = material.density * pressure_wave_speed(material) * momentum[c].norm() / mass[c];
+    const double stress = material.density * pressure_wave_speed(material) * change(c);
     if (stress > breaking_.limit(state_.glued, static_cast<std::uint32_t>(b))) return true;
   }
   return false;

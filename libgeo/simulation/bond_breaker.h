@@ -24,9 +24,9 @@ class BondBreaker {
   bool any_left() const;
   /// Whether a time step of dt seconds from `before` to the present motion is too long for what
   /// breaks in it: a bond is overloaded at its end, or a piece with bonds has been struck so hard
-  /// that a wave would break them (ρ c |Δv|), where the step is longer than a pressure wave takes
-  /// through half a wall. A wall that opens unloads its neighbours at that speed. `solid`: with its
-  /// points up to date; `friction`: between the sides of a wall.
+  /// that a wave would break them (ρ c |Δv|, with the velocity's change Δv but for gravity), where the step is longer
+  /// than a pressure wave takes through half a wall. A wall that opens unloads its neighbours at that speed. `solid`:
+  /// with its points up to date; `friction`: between the sides of a wall.
   bool is_too_long(const Solid& solid, const State& before, const Vec3& gravity, double friction, double dt);
   /// Opens the walls of all bonds that break in a time step of dt seconds, as one crack. Where that
   /// is refused, each half of them, down to one bond, which is counted as refused and tried again in

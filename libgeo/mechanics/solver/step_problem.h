@@ -35,7 +35,7 @@ struct StepProblem {
   /// correction is less than the fall which accuracy_in_contact() refers to; else it refers to the
   /// correction instead, of which backward Euler's error in a time step is about half. Beyond a
   /// tenth of a spacing it is coarser still, up to a hundredth of a spacing (docs/decisions/065,
-  /// 087, 104). `touched`: accuracy_in_contact().
+  /// 087, 105). `touched`: accuracy_in_contact().
   double accuracy_after(double touched, double correction) const {
     constexpr double unit_correction = 0.1, loose_accuracy = 0.01;
     const double relative = std::max(accuracy, touched / unit_correction) * correction;

@@ -160,14 +160,18 @@ TEST_CASE("the preconditioner of small stiff pieces is positive definite", "[mec
   }
 }
 
-TEST_CASE("accuracy is relative to what forces correct beyond a tenth of a spacing", "[mechanics]") {
-  const auto of = [&](double accuracy, double correction) { return StepProblem::accuracy_after(accuracy, correction); };
+TEST_CASE("accuracy is relative to what forces correct", "[mechanics]") {
+  const Linearised bar(1e4, 0.01, 1e-3);
+  const auto of = [&](double touched, double correction) { return bar.problem.accuracy_after(touched, correction); };
   CHECK(of(1e-3, 0) == 1e-3);
   CHECK(of(1e-3, 0.1) == Approx(1e-3));
   CHECK(of(1e-3, 0.5) == Approx(5e-3));
   CHECK(of(1e-3, 4) == 0.01);
-  CHECK(of(1e-6, 4) == Approx(4e-5));
   CHECK(of(0.03, 4) == 0.03);
+  // In contact, by the scene's accuracy of the correction where that is more than ten times gravity's way.
+  CHECK(of(1e-6, 1e-4) == 1e-6);
+  CHECK(of(1e-6, 0.05) == Approx(5e-5));
+  CHECK(of(1e-6, 4) == Approx(4e-3));
 }
 
 TEST_CASE("accuracy in contact is a hundredth of gravity's way in a step, at the default", "[mechanics]") {

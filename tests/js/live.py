@@ -109,7 +109,7 @@ def drop(hand, path):
     """Drops a file on the page; it is shown when this returns."""
     data = {"items": [], "files": [os.path.abspath(path)], "dragOperationsMask": 1}
     for kind in ("dragEnter", "dragOver", "drop"):
-        hand.send("Input.dispatchDragEvent", type=kind, x=300, y=250, data=data)
+        hand.send("Input.dispatchDragEvent", type=kind, x=240, y=210, data=data)
     name = os.path.splitext(os.path.basename(path))[0]
     hand.wait(f"$('title').textContent === '{name}' && live.stats.undo === 0", seconds=120)
 
@@ -210,28 +210,32 @@ def use(hand):
 
 
 def rate(hand):
-    """Frames that the simulation would compute in a second, without a limit; those that it does, in real time at most 60."""
+    """Frames that the simulation could compute in a second by the mean time of one, and those that it does, at most 60: the median and
+    the best of twenty looks."""
     seen = []
-    for _ in range(12):
+    for _ in range(20):
         at = hand.run("live.time")
-        hand.wait(f"live.time > {at} + 0.15", seconds=120)
+        hand.wait(f"live.time > {at} + 0.1", seconds=120)
         seen.append(hand.stats())
     steps, frames = sorted(s["step_ms"] for s in seen), sorted(s["fps"] for s in seen)
-    return f"{1000 / steps[len(steps) // 2]:.0f} possible, {frames[len(frames) // 2]:.0f} shown"
+    return f"{1000 / steps[10]:.0f} could be computed (best {1000 / steps[0]:.0f}), {frames[10]:.0f} are (best {frames[-1]:.0f})"
 
 
 def measure(hand):
+    """Both models whole and after a cut, frames a second; drawn as small as the page can be, since this browser draws without a card."""
     subprocess.run([os.path.join(rates, "samples", "kerf-model"), "polyp", "--frequency", "8", "-o", "polyp.ply"], check=True)
-    hand.visit(address + "?nodes=800#shadows=false")
-    hand.run("orders.menu()")
-    for name, nodes in (("polyp", ""), ("bear", "800")):
+    for name, query in (("bear", "?nodes=800"), ("polyp", "?nodes=600")):
+        hand.visit(address + query + "#shadows=false&plotted=false", width=480, height=420, scale=0.25)
         if name == "polyp":
             drop(hand, "polyp.ply")
-        else:
-            hand.visit(address + "?nodes=800#shadows=false")
-        hand.tool("knife")
-        pieces = cut(hand, 1)
-        print(f"{name}: {hand.run('live.nodes') or nodes} nodes, {pieces} pieces: {rate(hand)}", flush=True)
+        hand.key(".")
+        hand.wait("live.time > 0")
+        hand.key(" ")
+        whole = rate(hand)
+        hand.key("r")
+        hand.wait("live.time === 0")
+        pieces = cut(hand, 1, reach=200)
+        print(f"{name}, {query[7:]} nodes: whole {whole}; in {pieces} pieces {rate(hand)}", flush=True)
 
 
 hand = Hand(640, 560)

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
-#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -107,9 +107,8 @@ void push_away(const geo::Body& body, const Vec3& from, geo::State& motion) {
   }
 }
 
-// The run with one pattern; nothing where faces would cross.
-std::optional<geo::RunStart> attempt(const geo::Simulation& run, const PickedPoint& hit, int cells,
-                                     std::uint64_t seed) {
+// The run with one pattern. Throws GeometryError where it cannot be.
+geo::RunStart attempt(const geo::Simulation& run, const PickedPoint& hit, int cells, std::uint64_t seed) {
   const Complex& old = run.body().surface;
   const geo::Pieces pieces = geo::find_pieces(old);
   const std::int32_t piece = pieces.of_side[row(hit.side)];
@@ -119,6 +118,7 @@ std::optional<geo::RunStart> attempt(const geo::Simulation& run, const PickedPoi
                     geo::CrackNumbers(old).next());
   Grown grown(old, cut);
   keep_within(grown, pieces, piece);
+  if (geo::find_pieces(grown.now).count == pieces.count) throw geo::GeometryError("no wall divides it");
   geo::RunStart start{.body = run.body(), .state = run.state()};
   end_cracks(run, start.state);
   const geo::BodyDelta delta = geo::update_body(start.body, grown.now);
@@ -130,7 +130,8 @@ std::optional<geo::RunStart> attempt(const geo::Simulation& run, const PickedPoi
   start.state.surface = broken_surface(run, Grown(old, start.body.surface), hit);
   geo::TriangleMesh surface = start.body.surface.two_sided();
   surface.vertices = start.state.surface;
-  if (geo::count_crossings(surface) > 0) return {};
+  if (geo::count_crossings(surface) > 0)
+    throw geo::GeometryError("faces would cross; break it elsewhere, or when it is less bent");
   return start;
 }
 
@@ -138,14 +139,13 @@ std::optional<geo::RunStart> attempt(const geo::Simulation& run, const PickedPoi
 
 geo::RunStart broken_body(const geo::Simulation& run, const PickedPoint& hit, const Vec3& place, int cells) {
   constexpr std::uint64_t attempts = 6, with_all_cells = 3;  // then with half of them: walls are farther apart
-  std::string reason = "faces would cross; break it elsewhere, or when it is less bent";
+  std::string reason;
   for (std::uint64_t i = 0; i < attempts; ++i) {
     try {
-      auto start = attempt(run, hit, i < with_all_cells ? cells : std::max(2, cells / 2),
-                           run.body().crack_steps + 1 + (i << 32));
-      if (!start) continue;
-      push_away(start->body, place, start->state.motion);
-      return std::move(*start);
+      geo::RunStart start = attempt(run, hit, i < with_all_cells ? cells : std::max(2, cells / 2),
+                                    run.body().crack_steps + 1 + (i << 32));
+      push_away(start.body, place, start.state.motion);
+      return start;
     } catch (const geo::GeometryError& e) {
       reason = e.what();
     } catch (const geo::InputError& e) {

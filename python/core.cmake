@@ -14,20 +14,23 @@ endif()
 set_target_properties(${core_target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${core_package} BUILD_RPATH "$ORIGIN"
   INSTALL_RPATH "$ORIGIN" BUILD_WITH_INSTALL_RPATH ON)
 
-get_target_property(hwy_configurations hwy::hwy IMPORTED_CONFIGURATIONS)
-list(GET hwy_configurations 0 hwy_configuration)
-get_target_property(hwy_library hwy::hwy IMPORTED_LOCATION_${hwy_configuration})
-get_target_property(hwy_name hwy::hwy IMPORTED_SONAME_${hwy_configuration})
-find_file(KERF_HWY_LICENCE copyright PATHS /usr/share/doc/libhwy1 /usr/share/doc/libhwy-dev)
-
 file(GLOB core_files CONFIGURE_DEPENDS core/*.py)
 add_custom_target(kerf_python_core DEPENDS ${core_target}
-  COMMAND ${CMAKE_COMMAND} -E copy_if_different ${hwy_library} ${core_package}/${hwy_name}
   COMMAND ${CMAKE_COMMAND} -E copy_if_different ${python_files} ${core_files} ${core_package})
 if(KERF_TESTS)
   set_target_properties(kerf_python_core ${core_target} PROPERTIES EXCLUDE_FROM_ALL OFF)
 endif()
 install(TARGETS ${core_target} LIBRARY DESTINATION kerf COMPONENT python_core EXCLUDE_FROM_ALL)
 install(FILES ${python_files} ${core_files} DESTINATION kerf COMPONENT python_core EXCLUDE_FROM_ALL)
-install(PROGRAMS ${hwy_library} DESTINATION kerf COMPONENT python_core EXCLUDE_FROM_ALL RENAME ${hwy_name})
-install(FILES ${KERF_HWY_LICENCE} DESTINATION kerf COMPONENT python_core EXCLUDE_FROM_ALL RENAME libhwy-licence.txt OPTIONAL)
+
+get_target_property(hwy_configurations hwy::hwy IMPORTED_CONFIGURATIONS)
+list(GET hwy_configurations 0 hwy_configuration)
+get_target_property(hwy_library hwy::hwy IMPORTED_LOCATION_${hwy_configuration})
+get_target_property(hwy_name hwy::hwy IMPORTED_SONAME_${hwy_configuration})
+if(hwy_name)  # a static library is in the extension
+  add_custom_command(TARGET kerf_python_core POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${hwy_library} ${core_package}/${hwy_name})
+  find_file(KERF_HWY_LICENCE copyright PATHS /usr/share/doc/libhwy1 /usr/share/doc/libhwy-dev)
+  install(PROGRAMS ${hwy_library} DESTINATION kerf COMPONENT python_core EXCLUDE_FROM_ALL RENAME ${hwy_name})
+  install(FILES ${KERF_HWY_LICENCE} DESTINATION kerf COMPONENT python_core EXCLUDE_FROM_ALL RENAME libhwy-licence.txt OPTIONAL)
+endif()

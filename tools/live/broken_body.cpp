@@ -138,7 +138,7 @@ geo::RunStart attempt(const geo::Simulation& run, const PickedPoint& hit, int ce
 }  // namespace
 
 geo::RunStart broken_body(const geo::Simulation& run, const PickedPoint& hit, const Vec3& place, int cells) {
-  constexpr std::uint64_t attempts = 6, with_all_cells = 3;  // then with half of them: walls are farther apart
+  constexpr std::uint64_t attempts = 4, with_all_cells = 2;  // then with half of them: walls are farther apart
   std::string reason;
   for (std::uint64_t i = 0; i < attempts; ++i) {
     try {

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include <kerf/body_file.h>
 #include <kerf/error.h>
 #include <kerf/files.h>
 #include "live/bare_model.h"
@@ -71,22 +72,31 @@ void require_options(const Command& command) {
   if (!command.record.empty()) geo::require_writable(command.record);
 }
 
+bool has_work(const live::Session& session) {
+  if (session.blows() > 0) return true;
+  const geo::Scene recording = session.recording();
+  const geo::Scene& original = session.original();
+  return recording.blades.size() > original.blades.size() || recording.pulls.size() > original.pulls.size() ||
+         recording.grips.size() > original.grips.size();
+}
+
 // Where to write what hands did; empty: nowhere. A run that ended without being asked to keeps
 // their work, and overwrites no file.
 std::string record_path(const Command& command, const live::Shown& shown, live::LoopEnd end) {
   if (!command.record.empty()) return command.record;
-  const geo::Scene recording = shown.session->recording();
-  const geo::Scene& original = shown.session->original();
-  const bool has_work = recording.blades.size() > original.blades.size() ||
-                        recording.pulls.size() > original.pulls.size() ||
-                        recording.grips.size() > original.grips.size();
-  if (end == live::LoopEnd::asked || !has_work) return {};
+  if (end == live::LoopEnd::asked || !has_work(*shown.session)) return {};
   std::string path = shown.name + "-recorded.toml";
   for (int number = 2; fs::exists(path); ++number) path = shown.name + "-recorded-" + std::to_string(number) + ".toml";
   return path;
 }
 
+// After a blow, which no scene has, the body is kept in place of the recording.
 void record(const live::Session& session, const std::string& path, const tool::Tool& t) {
+  if (session.blows() > 0) {
+    const std::string body = fs::path(path).replace_extension(".kerf").string();
+    geo::write_all(body, [&](std::ostream& out) { geo::write_body(out, session.run().body()); });
+    return t.say("kerf-live: a scene cannot hold a blow; the body is kept in " + body);
+  }
   const std::string folder = fs::absolute(path).parent_path().string();
   geo::write_all(path, [&](std::ostream& out) { geo::write_scene(out, session.recording(), folder); });
   t.say("kerf-live: " + tool::counted(static_cast<std::size_t>(session.run().state().frame), "frame") +

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
+#include <system_error>
 
 #include "base/number_text.h"
 #include "kerf/files.h"
@@ -56,7 +57,9 @@ class SceneWriter {
   void flag(const char* name, bool on) { key(name, std::string(on ? "true" : "false")); }
   void path(const char* name, const std::string& file) {
     namespace fs = std::filesystem;
-    const fs::path absolute = fs::absolute(file).lexically_normal();
+    std::error_code none;  // a browser has no current folder: the file is named as it is
+    const fs::path absolute = fs::absolute(file, none).lexically_normal();
+    if (none) return key(name, quoted(file));
     key(name, quoted((folder_.empty() ? absolute : absolute.lexically_relative(fs::absolute(folder_))).string()));
   }
   void rotation(const Eigen::Quaterniond& r) {

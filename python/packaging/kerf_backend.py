@@ -1,6 +1,8 @@
 """Builds wheels and sdists of the module (PEP 517). scikit-build-core does the work where it is installed. Elsewhere CMake
 is run with the same settings, those in pyproject.toml, and the files are packed here (PEP 427, PEP 643).
 
+build_core_wheel() makes a wheel of the core, which carries its libraries: python/build calls it.
+
 A setting for the build, as `pip wheel --config-settings build-dir=DIR`: the folder of CMake's build, kept for the next one.
 """
 import base64
@@ -45,9 +47,9 @@ def _metadata():
     return "\n".join(lines)
 
 
-def _tag():
+def _tag(platform=None):
     python = "cp%d%d" % sys.version_info[:2]
-    return f"{python}-{python}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
+    return f"{python}-{python}-{platform or re.sub('[-.]', '_', sysconfig.get_platform())}"
 
 
 def _run(*command):
@@ -61,6 +63,15 @@ def _time():
         return int(os.environ["SOURCE_DATE_EPOCH"])
     git = subprocess.run(["git", "-C", ROOT, "log", "-1", "--format=%ct"], capture_output=True, text=True)
     return int(git.stdout) if git.returncode == 0 and git.stdout.strip() else 1577836800
+
+
+def _manylinux():
+    """The platform of a wheel that needs nothing but as new a C library as this machine's (PEP 600)."""
+    name = re.sub("[-.]", "_", sysconfig.get_platform())
+    library, _, version = os.confstr("CS_GNU_LIBC_VERSION").partition(" ")
+    if library != "glibc" or not name.startswith("linux_"):
+        raise RuntimeError(f"a wheel with its libraries is made on Linux with glibc, not on {name} with {library}")
+    return name.replace("linux", "manylinux_" + version.replace(".", "_"), 1)
 
 
 def _installed(build, stage):
@@ -81,7 +92,7 @@ def _pack(wheel, files):
         def add(name, content):
             entry = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
+            entry.external_attr = (0o100755 if ".so" in name else 0o100644) << 16
             archive.writestr(entry, content)
 
         for name, content in files:
@@ -92,9 +103,9 @@ def _pack(wheel, files):
         add(f"{info}/RECORD", "\n".join(record) + "\n")
 
 
-def _information():
+def _information(platform=None):
     """The wheel's .dist-info without RECORD, as (name, bytes) pairs."""
-    wheel = f"Wheel-Version: 1.0\nGenerator: kerf_backend\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
+    wheel = f"Wheel-Version: 1.0\nGenerator: kerf_backend\nRoot-Is-Purelib: false\nTag: {_tag(platform)}\n"
     texts = {"METADATA": _metadata(), "WHEEL": wheel, "LICENSE": (ROOT / "LICENSE").read_text()}
     return [(f"kerf-{_version()}.dist-info/{name}", text.encode()) for name, text in texts.items()]
 
@@ -105,11 +116,29 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as work:
         stage = pathlib.Path(work) / "stage"
         _installed((config_settings or {}).get("build-dir") or pathlib.Path(work) / "build", stage)
-        files = [(str(path.relative_to(stage)), path.read_bytes()) for path in sorted((stage / "kerf").rglob("*")) if path.is_file()]
-        if not any(name.endswith(".so") for name, _ in files):
-            raise RuntimeError("the build installed no extension")
-        name = f"kerf-{_version()}-{_tag()}.whl"
-        _pack(pathlib.Path(wheel_directory) / name, files + _information())
+        return _packed(wheel_directory, stage)
+
+
+def build_core_wheel(wheel_directory, build):
+    """A wheel of the core. `build`: folder of a build of either edition, or of one that is made here."""
+    build = pathlib.Path(build)
+    if not (build / "CMakeCache.txt").exists():
+        switches = dict(KERF_CORE="ON", KERF_PYTHON="ON", KERF_PYTHON_DIR=".", KERF_TESTS="OFF", KERF_C="OFF", KERF_UNITY="ON")
+        _run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", f"-DPython3_EXECUTABLE={sys.executable}",
+             *(f"-D{name}={value}" for name, value in switches.items()))
+    _run("cmake", "--build", build, "--target", "kerf_python_core")
+    with tempfile.TemporaryDirectory() as stage:
+        _run("cmake", "--install", build, "--prefix", stage, "--component", "python_core", "--strip")
+        return _packed(wheel_directory, pathlib.Path(stage), _manylinux())
+
+
+def _packed(wheel_directory, stage, platform=None):
+    """Packs the package that is installed below `stage`; the wheel's name."""
+    files = [(str(path.relative_to(stage)), path.read_bytes()) for path in sorted((stage / "kerf").rglob("*")) if path.is_file()]
+    if not any(name.endswith(".so") for name, _ in files):
+        raise RuntimeError("the build installed no extension")
+    name = f"kerf-{_version()}-{_tag(platform)}.whl"
+    _pack(pathlib.Path(wheel_directory) / name, files + _information(platform))
     return name
 
 

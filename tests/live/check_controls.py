@@ -6,12 +6,13 @@ model: a model without a scene waits for the first hand, and again after a reset
 pin: it holds its place while the body is shaken. sliders: the material has the values that they show.
 reconnect: a page that lost its connection, and one that is loaded again, show the whole state.
 paused: a stroke drawn without a step cuts at the next one; keys after clicks, Escape in a stroke, the graph after a cut, a hidden page.
+broken: a click breaks the body; what is kept then is no scene, and undo gives the scene back.
 press: obstacles, a plane among them, are drawn, also in the view that the address asks for.
 Of each, no console error, no frame with triangles that cross, and the recorded scene replays to the same bytes.
 """
 import time
 from hand import along
-from page_session import Session, check, hand, models, run
+from page_session import Session, check, figures, hand, models, run
 
 # The triangles that the page has: how many, how many on cracks, and sums of their vertices' numbers and positions.
 SHOWN = """(() => {
@@ -180,6 +181,32 @@ def pin():
     hand.wait("live.stats.pins.length === 0")
     session.pause()
     session.done()
+
+
+def broken():
+    session = Session("jello", "--record", "broken.toml")
+    session.pause()
+    hand.tool("break")
+    hand.click(*hand.place([0.5, 0.1, 0.9]))
+    hand.wait("live.stats.blows === 1 && live.stats.undo === 1 && live.stats.pieces > 4")
+    check("broken: a click beside the body breaks it", not hand.run("breakAt(3, 3)"))
+    pieces = hand.stats()["pieces"]
+    hand.key("u")
+    hand.wait("live.stats.blows === 0 && live.stats.pieces === 1")
+    session.program.save("toml", "whole.toml")
+    hand.key("U")
+    hand.wait(f"live.stats.blows === 1 && live.stats.pieces === {pieces}")
+    hand.key(" ")
+    hand.wait("!live.stats.paused")
+    at = hand.run("live.time")
+    hand.wait(f"live.time > {at} + 0.3")
+    session.program.save("stl", "broken.stl")
+    check(f"broken: the .stl has {figures('broken.stl')}", figures("broken.stl")["faces"] > 1000)
+    check(f"broken: the console has {hand.errors}", not hand.errors)
+    code = session.program.stop()
+    check(f"broken: exit code {code}: {session.program.said}", code == 0 and "cannot hold a blow" in "".join(session.program.said))
+    kept = figures("broken.kerf")
+    check(f"broken: the body is kept as {kept}", kept["pieces"] >= pieces)
 
 
 def sliders():

@@ -1,6 +1,6 @@
 #!/bin/sh
 # kerf-live's page in headless Chromium.
-#   tests/live/run.sh TOOLS_DIR SAMPLES_DIR polyp|apple|jello|model|scalpel|wound|pin|sliders|reconnect|paused|press|first|path|late|steps|hold|look|gone|drop|keys
+#   tests/live/run.sh TOOLS_DIR SAMPLES_DIR polyp|apple|jello|model|scalpel|wound|pin|broken|sliders|reconnect|paused|press|first|path|late|steps|hold|look|gone|drop|keys
 set -eu
 here=$(dirname "$(realpath "$0")")
 tools=$(realpath "$1")
@@ -12,7 +12,7 @@ case $3 in
   polyp | model | scalpel | wound | reconnect | paused | first | path | late | look | gone | drop | keys) kerf-model polyp --frequency 8 -o "$work/polyp.ply" ;;
   apple) kerf-model apple -o "$work/apple.ply" ;;
   press) kerf-model block --edge 0.12 -o "$work/press.ply" && kerf-model sphere --frequency 12 -o "$work/ball.ply" ;;
-  jello | pin | sliders | steps | hold) kerf-model block --edge 0.08 -o "$work/jello.ply" ;;
+  jello | pin | broken | sliders | steps | hold) kerf-model block --edge 0.08 -o "$work/jello.ply" ;;
 esac
 case $3 in
   polyp | apple | jello) check=check_live.py ;;

@@ -54,6 +54,8 @@ TEST_CASE("each kind of message is read") {
   REQUIRE(path.way.size() == 2);
   CHECK((path.way[0].origin == geo::Vec3(0, -3, 0) && path.way[0].direction == geo::Vec3(0, 1, 0)));
   CHECK((path.way[1].origin == geo::Vec3(0.5, -6, 0) && path.way[1].direction == geo::Vec3(1, 0, 0)));
+  const auto blow = std::get<Blow>(read_command(samples[17]));
+  CHECK((blow.spot.face == 12 && blow.cells == 9));
   const auto surface_path = std::get<Stroke>(read_command(samples[13]));
   REQUIRE(surface_path.way.size() == 1);
   CHECK((surface_path.way[0].origin - surface_path.origin - geo::Vec3(1, 0, 0)).norm() < 1e-12);
@@ -90,6 +92,7 @@ TEST_CASE("each fault of a message has its reason") {
   CHECK(reason("{\"set\":{\"young\":1e999}}") == "the message is no JSON");
   CHECK(reason(R"({"pin":{"face":1,"on":true}})") == "'pin.bary' is missing");
   CHECK(reason(R"({"pin":{"face":1,"bary":[1,1,1],"on":true}})") == "'pin.bary' must be barycentric coordinates");
+  CHECK(reason(R"({"break":{"face":1,"bary":[1,0,0],"cells":1}})") == "'break.cells' must be 2 to 64");
   CHECK(reason(R"({"pin":{"face":-1,"bary":[1,0,0],"on":true}})").find("'pin.face' must be a whole number") == 0);
   const std::string knife =
       R"({"knife":{"id":1,"phase":"begin","input":1,"eye":[0,0,0],"ray":[0,1,0],"depth":1,"from":0}})";

@@ -235,6 +235,69 @@ TEST_CASE("undo keeps the scene's own changes, and a grab that has not moved is 
   CHECK(replayed(session) == surface_bytes(session.run()));
 }
 
+TEST_CASE("a blow breaks the piece that is hit, and no other") {
+  Session session(setup(), {});
+  Snapshot s = shown(session);
+  PageModel page;
+  page.take(encode_state(s, {1}));
+  CHECK_THROWS_AS(session.obey(Blow{{1u << 30, {1, 0, 0}}, 8}), BadMessage);
+  session.obey(1, knife(1, Phase::begin, -0.2));
+  CHECK_THROWS_AS(session.obey(Blow{{0, {1, 0, 0}}, 8}), BadMessage);
+  session.obey(1, knife(1, Phase::end, -0.2));
+  session.advance();
+  cut(session, 2, -0.2, 1.2);
+  for (int i = 0; i < 5; ++i) session.advance();
+  REQUIRE(session.pieces() == 2);
+  const std::string before = surface_bytes(session.run());
+  const geo::Pieces halves = geo::find_pieces(session.run().body().surface);
+  shown(session);
+  const std::size_t cuts = session.history().strokes();
+  session.obey(Blow{{0, {0.4, 0.3, 0.3}}, 8});
+  CHECK(session.history().strokes() == cuts + 1);
+  CHECK(session.blows() == 1);
+  CHECK(session.pieces() >= 4);
+  // One half is as it was: its volume is that of a piece.
+  const geo::Pieces parts = geo::find_pieces(session.run().body().surface);
+  const auto has = [&](double volume) {
+    return std::any_of(parts.volume.begin(), parts.volume.end(),
+                       [&](double v) { return std::abs(v - volume) < 1e-9 * volume; });
+  };
+  CHECK(has(halves.volume.at(0)) != has(halves.volume.at(1)));
+  CHECK(geo::check_body(session.run().body()).good());
+  CHECK(geo::count_crossings(session.run().surface()) == 0);
+  for (int i = 0; i < 20; ++i) {
+    REQUIRE(session.advance().empty());
+    CHECK(geo::count_crossings(session.run().surface()) == 0);
+  }
+  s = shown(session);
+  page.take(encode_state(s, {2}));
+  require_same(page, session.run());
+  CHECK_THROWS_AS(session.recording(), geo::InputError);
+  // A part breaks again, and both blows are undone and made again.
+  const std::uint32_t once = session.pieces();
+  shown(session);
+  session.obey(Blow{{0, {0.4, 0.3, 0.3}}, 4});
+  CHECK(session.pieces() > once);
+  const std::string twice = surface_bytes(session.run());
+  // A stroke that cuts nothing leaves the blow before it to be undone.
+  session.obey(1, knife(3, Phase::begin, -3));
+  session.obey(1, knife(3, Phase::move, -2.9));
+  session.advance();
+  session.obey(1, knife(3, Phase::end, -2.9));
+  for (int i = 0; i < 3; ++i) session.advance();
+  CHECK(session.history().strokes() == cuts + 2);
+  session.undo();
+  session.redo();
+  session.undo();
+  CHECK(session.blows() == 1);
+  CHECK(session.pieces() == once);
+  session.undo();
+  CHECK(session.blows() == 0);
+  CHECK(surface_bytes(session.run()) == before);
+  CHECK(replayed(session) == surface_bytes(session.run()));
+  CHECK(twice != before);
+}
+
 TEST_CASE("requests that cannot be obeyed are refused, and hands of a page that went are let go") {
   Session session(setup(), {});
   CHECK_THROWS_AS(session.obey(1, Grab{1, 1, Phase::begin, {1u << 30, {1, 0, 0}}, {0, 0, 0}}), BadMessage);

@@ -195,6 +195,13 @@ Grab grab_of(Table& t) {
 
 Pin pin_of(Table& t) { return {spot_of(t), t.flag("on"), t.optional_number("radius", 0, farthest).value_or(0)}; }
 
+Blow blow_of(Table& t) {
+  constexpr std::uint64_t fewest = 2, most = 64;
+  const std::uint64_t cells = t.count("cells", most);
+  if (cells < fewest) t.fail("cells", "2 to 64");
+  return {spot_of(t), static_cast<int>(cells)};
+}
+
 Set set_of(Table& t) {
   return {.young = t.optional_number("young", 1, 1e12),
           .friction = t.optional_number("friction", 0, 1),
@@ -231,6 +238,7 @@ Command command_of(const std::string& key, const Json& value) {
   if (key == "scalpel") return inner(value, key, scalpel_of);
   if (key == "grab") return inner(value, key, grab_of);
   if (key == "pin") return inner(value, key, pin_of);
+  if (key == "break") return inner(value, key, blow_of);
   if (key == "set") return inner(value, key, set_of);
   if (key == "undo") return sign<Undo>(value, key);
   if (key == "redo") return sign<Redo>(value, key);

@@ -71,6 +71,11 @@ struct Pin {
   bool on = true;
   double radius = 0;  ///< model units; 0: as the server finds fit
 };
+/// A blow that breaks the piece around a point of the surface.
+struct Blow {
+  Spot spot;
+  int cells = 0;  ///< of the pattern: about as many parts, or fewer
+};
 /// Values of the scene.
 struct Set {
   std::optional<double> young, friction, damping;
@@ -84,7 +89,7 @@ struct Pause {
 };
 struct Step {};
 
-using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Set, Undo, Redo, Reset, Pause, Step>;
+using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Blow, Set, Undo, Redo, Reset, Pause, Step>;
 
 /// Reads a message. Throws BadMessage where it is longer than longest_message, no JSON, of no known
 /// kind, has unknown or missing keys, or values out of range. Throws nothing else.

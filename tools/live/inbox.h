@@ -25,7 +25,7 @@ struct Answer {
 };
 /// A file is wanted. `answer` may be called on any thread, once, while the server lives.
 struct Save {
-  std::string format;  ///< kerf, ply, glb or toml
+  std::string format;  ///< kerf, ply, glb, stl or toml
   std::function<void(Answer)> answer;
 };
 /// A model is to be opened in place of the one that is shown. `answer`: as in Save.

@@ -153,8 +153,8 @@ struct Turns::Impl {
     const auto* stroke = std::get_if<Stroke>(&command);
     const auto* grab = std::get_if<Grab>(&command);
     return (stroke && stroke->phase == Phase::begin) || (grab && grab->phase == Phase::begin) ||
-           std::holds_alternative<Pin>(command) || std::holds_alternative<Set>(command) ||
-           std::holds_alternative<Step>(command);
+           std::holds_alternative<Pin>(command) || std::holds_alternative<Blow>(command) ||
+           std::holds_alternative<Set>(command) || std::holds_alternative<Step>(command);
   }
   bool obey_command(ClientId, const Acknowledge&) { return false; }
   bool obey_command(ClientId, const Want&) { return true; }
@@ -173,6 +173,11 @@ struct Turns::Impl {
   }
   bool obey_command(ClientId, const Set& c) {
     session().obey(c);
+    return true;
+  }
+  bool obey_command(ClientId, const Blow& c) {
+    session().obey(c);
+    restart();
     return true;
   }
   bool obey_command(ClientId, const Undo&) {

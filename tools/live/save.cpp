@@ -34,6 +34,7 @@ std::string saved_file(const Session& session, const std::string& format, const 
   std::ostringstream out;
   if (format == "kerf") geo::write_body(out, session.run().body());
   if (format == "ply") geo::write_ply(out, session.run().surface());
+  if (format == "stl") geo::write_stl(out, session.run().surface());
   if (format == "glb") write_pieces(out, session);
   if (format == "toml") geo::write_scene(out, session.recording(), folder);
   return std::move(out).str();

@@ -121,6 +121,7 @@ std::string statistics_text(const Session& session, const Pace& pace) {
             {"paused", pace.paused},
             {"undo", session.history().strokes()},
             {"redo", session.history().undone()},
+            {"blows", session.blows()},
             {"waiting", session.hands().waiting()},
             {"holds", holds},
             {"message", pace.message},

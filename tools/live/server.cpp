@@ -339,8 +339,8 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
     send(http::status::service_unavailable, "the simulation is busy");
   }
   void save(const std::string& format) {
-    if (format != "kerf" && format != "ply" && format != "glb" && format != "toml")
-      return send(http::status::not_found, "as=kerf, ply, glb or toml");
+    if (format != "kerf" && format != "ply" && format != "glb" && format != "stl" && format != "toml")
+      return send(http::status::not_found, "as=kerf, ply, glb, stl or toml");
     const auto number = wait();
     Save save{format, [hub = &hub_, number, format](Answer answer) {
                 hub->pass_on(number, [format, answer = std::move(answer)](Visit& visit) mutable {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <kerf/error.h>
+#include "live/broken_body.h"
 #include "live/memory.h"
 #include "sim/start.h"
 
@@ -69,6 +70,18 @@ void Session::obey(const Set& set) {
   }
 }
 
+void Session::obey(const Blow& blow) {
+  if (hands_.has_strokes()) throw BadMessage("a stroke is in the body: break it when the stroke is over");
+  const PickedPoint hit = view_.pick(run_.body().surface, blow.spot);
+  const geo::RunStart broken = broken_body(run_, hit, view_.world_point(blow.spot), blow.cells);
+  history_.forget_undone();
+  history_.add({.mark = scene().mark(run_.state()), .beside = beside()}, state_bytes());
+  Beside now = beside();
+  ++now.blows;
+  resume(scene().at(scene().mark(run_.state())), sim::checkpoint_bytes(broken.body, broken.state, setup_.fingerprint),
+         broken.state.frame, std::move(now));
+}
+
 Effort Session::effort() const { return {run_.scene().accuracy, run_.scene().steps_per_frame()}; }
 
 Effort Session::least_effort() const {
@@ -104,6 +117,7 @@ std::string Session::state_bytes() const {
 void Session::resume(const geo::Scene& scene, const std::string& checkpoint, int frame, Beside beside) {
   checkpoints_ = std::move(beside.checkpoints);
   withheld_ = beside.withheld;
+  blows_ = beside.blows;
   if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
   hands_.begin_anew(std::move(beside.lasting));
   view_.clear();
@@ -199,6 +213,8 @@ std::string Session::advance(bool whole) {
 }
 
 geo::Scene Session::recording() const {
+  if (blows_ > 0)
+    throw geo::InputError("a scene cannot hold a blow: undo it, or save the body as .kerf, .glb, .stl or .ply");
   geo::Scene scene = geo::recording_of(setup_.scene, run_);
   scene.checkpoints = checkpoints_;
   return scene;

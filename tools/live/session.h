@@ -46,6 +46,8 @@ class Session {
   void obey(ClientId page, const Grab& grab);
   void obey(const Pin& pin);
   void obey(const Set& set);
+  /// Likewise. It counts as a stroke that has cut.
+  void obey(const Blow& blow);
   /// Goes back to before the last stroke that has cut. Throws BadMessage without one.
   void undo();
   /// Goes to where the last undo left. Throws BadMessage without one, or after a new cut.
@@ -83,7 +85,8 @@ class Session {
   const geo::Simulation& run() const { return run_; }
   /// The values that the run began with.
   const geo::Scene& original() const { return setup_.scene; }
-  /// The scene that gives this run, with everything that hands did.
+  /// The scene that gives this run, with everything that hands did. Throws geo::InputError after a
+  /// blow, which no scene has.
   geo::Scene recording() const;
   /// Fills positions, topology and inputs taken.
   void show(Snapshot& snapshot);
@@ -99,13 +102,17 @@ class Session {
   bool is_weightless() const { return withheld_.has_value(); }
   /// Gravity, also while it is withheld.
   geo::Vec3 gravity() const { return withheld_ ? *withheld_ : run_.scene().gravity; }
+  /// Blows in the body as it is now.
+  int blows() const { return blows_; }
   /// World positions of the edges of blades that exist, each with the force on it, N.
   std::vector<std::pair<std::vector<geo::Vec3>, double>> edges() const;
 
  private:
   void require_space() const;
   HandMadeScene scene() const { return {setup_.scene, run_.scene(), changes_}; }
-  Beside beside() const { return {hands_.lasting(), checkpoints_, withheld_}; }
+  Beside beside() const {
+    return {.lasting = hands_.lasting(), .checkpoints = checkpoints_, .withheld = withheld_, .blows = blows_};
+  }
   std::string state_bytes() const;
   // Changes values of the run. Throws InputError for values that a scene may not have.
   void change_run(geo::SceneChange change);
@@ -129,6 +136,7 @@ class Session {
   std::map<ClientId, std::uint64_t> taken_;
   std::vector<geo::SceneChange> changes_;  // by hands and effort
   std::optional<geo::Vec3> withheld_;      // gravity that does not act yet
+  int blows_ = 0;                          // in the body as it is now
   std::vector<int> checkpoints_;           // frames from which the run went on from its own checkpoint
 };
 

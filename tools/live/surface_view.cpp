@@ -20,6 +20,7 @@ PickedPoint SurfaceView::pick(const geo::Complex& surface, const Spot& spot) con
   const geo::Side side = slots_.side(spot.face);
   if (!side.face.valid()) throw BadMessage("there is no such triangle now");
   PickedPoint picked;
+  picked.side = side;
   int most = 0;
   for (int k = 0; k < 3; ++k) {
     // A side is seen from its own side: its corners 1 and 2 are exchanged.

@@ -14,6 +14,7 @@ namespace live {
 struct PickedPoint {
   geo::Vec3 material = geo::Vec3::Zero();
   geo::SurfaceVertexId nearest;  ///< vertex of the surface
+  geo::Side side = {};           ///< in which it is
 };
 
 /// Slots and positions as of the last update().

@@ -23,7 +23,8 @@ void StrokeHistory::drop_states() {
 }
 
 void StrokeHistory::forget(std::size_t blade) {
-  for (std::size_t s = 0; s < saved_.size(); ++s) {
+  // A blow before the stroke has the same mark.
+  for (std::size_t s = saved_.size(); s-- > 0;) {
     if (saved_[s].mark.blades != blade) continue;
     saved_states_.erase(s);
     saved_.erase(saved_.begin() + static_cast<std::ptrdiff_t>(s));

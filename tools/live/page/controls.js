@@ -13,6 +13,7 @@ function set(key, value) {
   show(key);
   if (key === "tool") showTool();
   if (key === "depth") showDepth();
+  if (key === "cells") showCells();
   if (key === "stress" && value && state.skin === 1) set("skin", 0.2);
   if ((key === "nodes" || key === "edges") && value && state.skin === 1) set("skin", 0.2);
   if (["nodes", "edges", "stress"].includes(key) && !state.nodes && !state.edges && !state.stress && state.skin === 0.2) set("skin", 1);
@@ -22,7 +23,8 @@ function set(key, value) {
 }
 const does = {
   knife: "Drag across the body: the cut follows.", scalpel: "Drag along the surface: an edge cuts in.", grab: "Drag a place of the body. With Ctrl, or a second finger, it stays held.",
-  pin: "Click a place to hold it; click again to let go.", orbit: "Drag to turn, two fingers or the wheel to zoom.",
+  pin: "Click a place to hold it; click again to let go.",
+  break: "Click a place: the piece there breaks.", orbit: "Drag to turn, two fingers or the wheel to zoom.",
 };
 function showTool() {
   for (const button of document.querySelectorAll("[data-tool]")) button.setAttribute("aria-pressed", String(button.dataset.tool === state.tool));
@@ -30,6 +32,8 @@ function showTool() {
   $("hint").textContent = does[state.tool];
 }
 const showDepth = () => $("depth-value").textContent = state.depth >= 1 ? "through" : Math.round(100 * state.depth) + " %";
+
+const showCells = () => $("cells-value").textContent = String(state.cells);
 
 // Sliders of the material: what the program has, shown unless a hand is on the slider.
 const values = { young: null, gravity: null, friction: null, damping: null };
@@ -101,7 +105,7 @@ function savePicture() {
 }
 
 const keys = {
-  k: () => set("tool", "knife"), l: () => set("tool", "scalpel"), g: () => set("tool", "grab"), p: () => set("tool", "pin"), o: () => set("tool", "orbit"),
+  k: () => set("tool", "knife"), l: () => set("tool", "scalpel"), g: () => set("tool", "grab"), p: () => set("tool", "pin"), b: () => set("tool", "break"), o: () => set("tool", "orbit"),
   u: orders.undo, U: orders.redo, r: orders.reset, " ": orders.pause, ".": orders.step, h: resetView, m: toggleMenu, "?": orders.help,
   n: () => set("nodes", !state.nodes), e: () => set("edges", !state.edges), t: () => set("stress", !state.stress), w: () => set("wire", !state.wire),
   c: () => set("walls", !state.walls), s: () => set("skin", state.skin === 1 ? 0.2 : state.skin > 0 ? 0 : 1), d: () => set("shadows", !state.shadows),
@@ -137,13 +141,18 @@ function listenToControls() {
   });
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
-  for (const key of ["skin", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "look"]) {
+  for (const key of ["skin", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "cells", "look"]) {
     const control = $(key);
     show(key);
     control.addEventListener("input", () => set(key, control.type === "checkbox" ? control.checked : key === "look" ? control.value : Number(control.value)));
   }
   for (const name of Object.keys(values)) $(name).addEventListener("input", () => slide(name));
   $("wait").addEventListener("click", () => wire.open || connect());
+  document.addEventListener("click", (e) => {
+    if (!live.stats.blows || !e.target.closest("a[href='save?as=toml']")) return;
+    e.preventDefault(), e.stopImmediatePropagation();
+    notice({ error: "A scene cannot hold a break: undo it, or save the body as .kerf, .glb, .stl or .ply." });
+  }, true);
 }
 
 // A view to begin with, behind the page's name: #tool=grab&azimuth=1&nodes=true
@@ -174,7 +183,7 @@ function begin() {
   layers.push(surface, world, inside, { update() {}, beforeDraw: drawGhosts }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
   listenToControls(), listenToKeys(), listenToPointer(), listenToFiles();
   surface.dress();
-  showTool(), showDepth();
+  showTool(), showDepth(), showCells();
   $("plots").hidden = !state.plotted;
   new ResizeObserver(fit).observe($("stage"));
   fit(), resetView(), changed();

@@ -30,7 +30,7 @@ const cursor = {
       if (stays) keepHeld(hand.stroke);
       return endStroke();
     }
-    const done = state.tool === "pin" ? pinAt(this.x, this.y) : beginStroke(this.x, this.y, "keys");
+    const done = clickTools[state.tool]?.(this.x, this.y) ?? beginStroke(this.x, this.y, "keys");
     if (!done) notice({ notice: "The cross is not on the body." });
   },
 };

@@ -75,7 +75,7 @@ function listenToPointer() {
       if (e.type === "pointerup") moveStroke(e.offsetX, e.offsetY);
       if (e.ctrlKey || e.metaKey) keepHeld(hand.stroke);
       endStroke();
-    } else if (pending && e.type === "pointerup" && state.tool === "pin") pinAt(e.offsetX, e.offsetY);
+    } else if (pending && e.type === "pointerup") clickTools[state.tool]?.(e.offsetX, e.offsetY);
     pending = null;
   };
   canvas.addEventListener("pointerup", up);

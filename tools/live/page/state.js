@@ -1,6 +1,6 @@
 // What is shown, and what is known of the simulation. Shown coordinates have the body's first box in the unit sphere.
 const state = {
-  tool: "knife", depth: 1, skin: 1, walls: true, wire: false, look: "clay", nodes: false, edges: false, stress: false, size: 1,
+  tool: "knife", depth: 1, cells: 12, skin: 1, walls: true, wire: false, look: "clay", nodes: false, edges: false, stress: false, size: 1,
   shadows: true, plotted: true, clip: false, axis: 3, offset: 0, fill: false, selected: -1,
 };
 const about = { y_up: false, middle: [0, 0, 0], unit: 1 };

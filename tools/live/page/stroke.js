@@ -168,6 +168,13 @@ function pinAt(x, y) {
   send({ pin: { face: hit.slot, bary: hit.bary, on: !near, radius: 0.1 * about.unit } });
   return true;
 }
+function breakAt(x, y) {
+  const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);
+  if (!hit) return false;
+  send({ break: { face: hit.slot, bary: hit.bary, cells: state.cells } });
+  return true;
+}
+const clickTools = { pin: pinAt, break: breakAt };
 
 // What the edge of a stroke has swept, as a pale sheet that fades after the stroke; for the grab, a line from the held point.
 // A stroke on a paused body is shown until it has cut.

@@ -1,11 +1,54 @@
 // kerf-model: writes the procedural models of the samples, and fronts that halve a model.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <kerf/error.h>
 #include <kerf/files.h>
 #include <kerf/mesh.h>
 #include "tool.h"
+
+namespace {
+
+// A hemisphere of radius 1 with a wall of 0.15, open at its top: its profile turned about z.
+geo::TriangleMesh make_bowl(int frequency) {
+  const int around = 8 * frequency, along = 2 * frequency;
+  geo::TriangleMesh mesh;
+  const auto add_pole = [&](double radius) {
+    mesh.vertices.push_back({0, 0, -radius});
+    return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  };
+  // Rings from the pole upwards; the last one is the rim.
+  const auto add_rings = [&](double radius) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (int i = 1; i <= along; ++i)
+      for (int k = 0; k < around; ++k) {
+        const double polar = 0.5 * std::numbers::pi * i / along, turn = 2 * std::numbers::pi * k / around;
+        mesh.vertices.push_back(
+            radius * geo::Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), -std::cos(polar)));
+      }
+    return first;
+  };
+  const auto outer_pole = add_pole(1), outer = add_rings(1), inner_pole = add_pole(0.85), inner = add_rings(0.85);
+  const auto n = static_cast<std::uint32_t>(around), rim = n * static_cast<std::uint32_t>(along - 1);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { mesh.triangles.push_back({a, b, c}); };
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t l = (k + 1) % n;
+    add(outer_pole, outer + l, outer + k);
+    add(inner_pole, inner + k, inner + l);
+    for (std::uint32_t r = 0; r < rim; r += n) {
+      add(outer + r + k, outer + r + l, outer + r + n + l);
+      add(outer + r + k, outer + r + n + l, outer + r + n + k);
+      add(inner + r + k, inner + r + n + l, inner + r + l);
+      add(inner + r + k, inner + r + n + k, inner + r + n + l);
+    }
+    add(outer + rim + k, outer + rim + l, inner + rim + l);
+    add(outer + rim + k, inner + rim + l, inner + rim + k);
+  }
+  return mesh;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   tool::Tool t("kerf-model", "Makes a sample model, or a front that sweeps through the middle of a model.",
@@ -15,8 +58,8 @@ int main(int argc, char** argv) {
   std::string kind, text = "K", around;
   int frequency = 22, resolution = 24, steps = 12, points = 24;
   double edge = 0.1, depth = 0.25, bend = 0.06, tilt = 7;
-  t.argument("KIND", kind, "pumpkin, apple, polyp, sphere, block, plate, letter, or front");
-  t.option("--frequency", frequency, "Of pumpkin, apple, polyp, sphere: 20 f^2 triangles");
+  t.argument("KIND", kind, "pumpkin, apple, polyp, sphere, bowl, block, plate, letter, or front");
+  t.option("--frequency", frequency, "Of pumpkin, apple, polyp, sphere: 20 f^2 triangles; of a bowl: 64 f^2");
   t.option("--edge", edge, "Of a block (2 x 1 x 1) or plate (2 x 1 x 0.12): longest edge along an axis");
   t.option("--text", text, "Of a letter: A to Z");
   t.option("--depth", depth, "Of a letter");
@@ -67,6 +110,8 @@ int main(int argc, char** argv) {
       mesh = geo::make_polyp(frequency);
     else if (kind == "sphere")
       mesh = geo::make_sphere(frequency);
+    else if (kind == "bowl")
+      mesh = make_bowl(std::max(1, frequency));
     else if (kind == "block")
       mesh = geo::make_block({2, 1, 1}, edge);
     else if (kind == "plate")
@@ -76,9 +121,9 @@ int main(int argc, char** argv) {
     else if (kind == "letter")
       throw tool::UsageError("--text '" + text + "' is no letter from A to Z");
     else
-      throw tool::UsageError(
-          "'" + kind + "' is none of its models" +
-          geo::did_you_mean(kind, {"pumpkin", "apple", "polyp", "sphere", "block", "plate", "letter", "front"}));
+      throw tool::UsageError("'" + kind + "' is none of its models" +
+                             geo::did_you_mean(kind, {"pumpkin", "apple", "polyp", "sphere", "bowl", "block", "plate",
+                                                      "letter", "front"}));
     if (target.ends_with(".vdb")) return geo::write_level_set(target, mesh, 0.02 * geo::bounding_box(mesh).diagonal());
     geo::write_all(target, [&](std::ostream& out) { geo::write_ply(out, mesh, {}, "kerf-model " + kind); });
   });

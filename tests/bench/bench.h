@@ -56,6 +56,7 @@ struct Options {
 int crack(const Options& options);
 int dataset(const Options& options);
 int impact(const Options& options);
+int fracture(const Options& options);
 int block(const Options& options);
 int graph(const Options& options);
 int concave(const Options& options);

@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> frequencies, nodes;
   t.argument(
       "WHAT", what,
-      "break: impacts at run time; crack: progressive cutting beside CGAL; block: many cuts, remeshed; graph: its "
+      "break: impacts at run time; crack: progressive cutting beside CGAL; block: many cuts, remeshed; fracture: a "
+      "body that breaks along cells, beside one that does not; graph: its "
       "parts beside other "
       "libraries; concave: distances around concave edges; contact: self-contact of a sliced block; dataset: "
       "fractures for learning; live: "
@@ -29,18 +30,18 @@ int main(int argc, char** argv) {
            "Closed meshes to measure as well; live: these alone, each cut into a heap of pieces");
   return t.run(argc, argv, [&] {
     std::map<std::string, int (*)(const bench::Options&)> known{
-        {"crack", bench::crack},       {"block", bench::block},     {"graph", bench::graph},
-        {"concave", bench::concave},   {"contact", bench::contact}, {"mechanics", bench::mechanics},
-        {"dataset", bench::dataset},   {"live", bench::live},       {"score", bench::score},
-        {"validate", bench::validate}, {"break", bench::impact},    {"simulation", bench::simulation},
-        {"wasm", bench::wasm}};
+        {"crack", bench::crack},       {"block", bench::block},      {"graph", bench::graph},
+        {"concave", bench::concave},   {"contact", bench::contact},  {"mechanics", bench::mechanics},
+        {"dataset", bench::dataset},   {"live", bench::live},        {"score", bench::score},
+        {"validate", bench::validate}, {"break", bench::impact},     {"simulation", bench::simulation},
+        {"wasm", bench::wasm},         {"fracture", bench::fracture}};
 #ifdef KERF_PYTHON_SCRIPT
     known["python"] = bench::python;
 #endif
     if (!known.count(what))
       throw tool::UsageError(
           "nothing is known about '" + what +
-          "'; there are break, crack, block, graph, concave, contact, dataset, live, mechanics, score, "
+          "'; there are break, crack, block, fracture, graph, concave, contact, dataset, live, mechanics, score, "
           "simulation, validate, wasm and, with "
           "KERF_PYTHON, python");
     if (options.cuts < 10 || options.cuts > 100000) throw tool::UsageError("--cuts is from 10 to 100000");

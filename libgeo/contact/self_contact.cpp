@@ -69,7 +69,7 @@ SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOpti
       surface_(initial_surface(body, solid, weights_, std::move(positions))) {}
 
 ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const State& state, double dt,
-                                    const Vec3& gravity, const std::vector<std::uint8_t>& fixed) {
+                                    const Vec3& gravity, const std::vector<std::uint8_t>& fixed, double stopping) {
   update_weights(body, solid, state.displacement);
   const FreeMotion free = free_motion(body, solid, state, dt, gravity, fixed);
   const std::vector<Vec3>& targets = targets_at(state.displacement);
@@ -97,6 +97,7 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
                     .mean_targets = mean_targets,
                     .free_targets = free_targets,
                     .dt = dt,
+                    .stopping = stopping > 0 ? stopping : dt,
                     .gap = gap()},
                    surface_, near_, *step.penalty);
   return step;

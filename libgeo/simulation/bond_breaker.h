@@ -24,10 +24,14 @@ class BondBreaker {
   bool any_left() const;
   /// Whether a time step of dt seconds from `before` to the present motion is too long for what
   /// breaks in it: a bond is overloaded at its end, or a piece with bonds has been struck so hard
-  /// that a wave would break them (ρ c |Δv|, with the velocity's change Δv but for gravity), where the step is longer
-  /// than a pressure wave takes through half a wall. A wall that opens unloads its neighbours at that speed. `solid`:
-  /// with its points up to date; `friction`: between the sides of a wall.
+  /// that a wave would break them (ρ c |Δv|, with the velocity's change Δv but for gravity), where
+  /// the step is longer than shortest_step(). `solid`: with its points up to date; `friction`:
+  /// between the sides of a wall.
   bool is_too_long(const Solid& solid, const State& before, const Vec3& gravity, double friction, double dt);
+  /// The length below which no step is too long, s: a pressure wave runs through half a wall in it,
+  /// and a wall that opens unloads its neighbours at that speed. Infinite without bonds; it does not
+  /// change when they break.
+  double shortest_step(const Solid& solid) const;
   /// Opens the walls of all bonds that break in a time step of dt seconds, as one crack. Where that
   /// is refused, each half of them, down to one bond, which is counted as refused and tried again in
   /// the next step. Where some have broken, pieces that are joined by less than a node's share of
@@ -40,7 +44,6 @@ class BondBreaker {
   const Material& material_of(std::uint32_t of, const Solid& solid) const;
   void find_loads(const Solid& solid);
   std::vector<double> ratios(const Solid& solid, double friction) const;
-  double shortest_step(const Solid& solid) const;
   bool is_struck(const Solid& solid, const State& before, const Vec3& gravity, double dt) const;
 
   const Body& body_;

@@ -68,7 +68,7 @@ ContactScale scale_of(const ObjectContactStep& step, const Vec3& gravity) {
     spacing[m] /= count[m];
     scale.stiff[m] = standing_heights * materials[m].density * gravity.norm() +
                      std::min(relative_stiffness * materials[m].young / spacing[m],
-                              resolved_stiffness * materials[m].density * spacing[m] / (step.dt * step.dt));
+                              resolved_stiffness * materials[m].density * spacing[m] / (step.stopping * step.stopping));
   }
   for (const Vec3& v : step.motion.velocity) scale.fastest = std::max(scale.fastest, v.norm());
   scale.fall = step.dt * gravity.norm();

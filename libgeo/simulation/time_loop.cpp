@@ -149,6 +149,8 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
   std::optional<ContactStep> contact;
   const Solid& nodes = run_.solid.nodes();
   const State& motion = run_.state.motion;
+  // Contact gets softer where nothing is left that may break: its energy falls.
+  const double stopping = bonds_.any_left() ? std::min(step.dt, bonds_.shortest_step(nodes)) : step.dt;
   const auto begin = [&] {
     const Timed timed(stats.contact_seconds);
     if (obstacles_.any() || bonds_.any()) collisions_.update_weights(run_.body, nodes, motion);
@@ -162,10 +164,11 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
                                  .surface = collisions_.targets(motion),
                                  .motion = motion,
                                  .time = step.begin,
-                                 .dt = step.dt},
+                                 .dt = step.dt,
+                                 .stopping = stopping},
                                 loads_.environment());
     }
-    contact = collisions_.begin_step(run_.body, nodes, motion, step.dt, loads_.environment());
+    contact = collisions_.begin_step(run_.body, nodes, motion, step.dt, stopping, loads_.environment());
   };
   parallel_invoke([&] { run_.solid.whole(); }, begin);
   return contact;

@@ -1,5 +1,5 @@
 // Candidates of the free motion become contacts with depth = separation − n · (a − b), at most
-// constraints_per_node_pair for two nodes. Stiffness: 2 E / (ρ h²) + 1 / dt² per effective mass.
+// constraints_per_node_pair for two nodes. Stiffness: 2 E / (ρ h²) + 1 / t² per effective mass.
 #include "contact/response/penalty_assembly.h"
 
 #include <algorithm>
@@ -28,10 +28,10 @@ class PenaltyAssembly {
  public:
   PenaltyAssembly(const PenaltyInput& input, MovingSurface& surface, SelfContactPenalty& penalty)
       : in_(input), surface_(surface), edge_(surface.topology().edge), penalty_(penalty) {
-    // 1 / dt² lets a contact stop in one step what comes at it.
+    // 1 / t² lets a contact stop in this time what comes at it.
     const double h = input.free.mean_spacing;
     for (const Material& m : input.solid.materials().all())
-      stiffness_.push_back(relative_stiffness * m.young / (m.density * h * h) + 1 / (input.dt * input.dt));
+      stiffness_.push_back(relative_stiffness * m.young / (m.density * h * h) + 1 / (input.stopping * input.stopping));
   }
 
   // Contacts between points of different triangles.

@@ -34,6 +34,7 @@ struct PenaltyInput {
   const std::vector<Vec3>& mean_targets;  ///< Coincidence::averaged() of these
   const std::vector<Vec3>& free_targets;  ///< per surface vertex, at the end of the free motion
   double dt = 0;                          ///< s
+  double stopping = 0;                    ///< s: in which a contact stops what comes at it
   double gap = 0;                         ///< distance that surfaces in contact keep, model units
 };
 

@@ -4,6 +4,7 @@
 #include "contact/self_contact.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "contact/motion/bounded_motion.h"
@@ -17,6 +18,9 @@ namespace geo {
 namespace {
 
 constexpr std::size_t vertices_per_task = 1024;
+// Share of an existing separation deficit that a whole step makes good. Making good all of it at once
+// would throw the walls apart.
+constexpr double deficit_share = 0.5;
 
 // First guess of where vertices can go: what kept them off their targets when the step began is
 // likely to do so at its end.
@@ -69,7 +73,8 @@ SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOpti
       surface_(initial_surface(body, solid, weights_, std::move(positions))) {}
 
 ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const State& state, double dt,
-                                    const Vec3& gravity, const std::vector<std::uint8_t>& fixed, double stopping) {
+                                    const Vec3& gravity, const std::vector<std::uint8_t>& fixed,
+                                    const ContactPace& pace) {
   update_weights(body, solid, state.displacement);
   const FreeMotion free = free_motion(body, solid, state, dt, gravity, fixed);
   const std::vector<Vec3>& targets = targets_at(state.displacement);
@@ -97,7 +102,8 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
                     .mean_targets = mean_targets,
                     .free_targets = free_targets,
                     .dt = dt,
-                    .stopping = stopping > 0 ? stopping : dt,
+                    .stopping = pace.stopping > 0 ? pace.stopping : dt,
+                    .made_good = 1 - std::pow(1 - deficit_share, pace.whole_step > 0 ? dt / pace.whole_step : 1),
                     .gap = gap()},
                    surface_, near_, *step.penalty);
   return step;

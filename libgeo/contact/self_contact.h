@@ -41,6 +41,13 @@ struct EmbeddingPlan {
   std::uint64_t revision = 0;  ///< SelfContact::revision() when it was planned
 };
 
+/// Times of contact that are the same for all parts of a time step which is divided: the energy of what
+/// touches would change with them. 0: those of the step.
+struct ContactPace {
+  double stopping = 0;    ///< s: in which a contact stops what comes at it
+  double whole_step = 0;  ///< s: in which half of a separation deficit is made good
+};
+
 /// The surface of one body, with self-contact. Not thread-safe.
 class SelfContact {
  public:
@@ -50,11 +57,9 @@ class SelfContact {
               std::vector<Vec3> positions = {});
 
   /// Begins an implicit time step of dt seconds at `state`: finds what may touch in it. `gravity`
-  /// in model units / s². `fixed`: per node, or empty, as in Environment. `stopping`: s, in which a
-  /// contact stops what comes at it, 0: the step. Where steps have different lengths, it is the same
-  /// for all of them, because the energy of what touches would change with the stiffness.
+  /// in model units / s². `fixed`: per node, or empty, as in Environment.
   ContactStep begin_step(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
-                         const std::vector<std::uint8_t>& fixed, double stopping = 0);
+                         const std::vector<std::uint8_t>& fixed, const ContactPace& pace = {});
   /// Moves the surface after the nodes' implicit step, which has ended at `displacement`, per node.
   /// Reads nothing of the body, whose next crack may begin meanwhile. Throws std::logic_error when
   /// the surface has changed since `step` began, or `step` was finished.

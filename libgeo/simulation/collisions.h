@@ -19,10 +19,10 @@ class Collisions {
   Collisions(const Scene& scene, const Body& body, const Solid& solid, const std::vector<Vec3>& positions);
 
   /// Begins a time step of dt seconds; adds the potential of an implicit one to `environment`. The
-  /// result owns that potential, and is empty for explicit steps. `stopping`: see
+  /// result owns that potential, and is empty for explicit steps. `pace`: see
   /// SelfContact::begin_step().
   std::optional<ContactStep> begin_step(const Body& body, const Solid& solid, const State& motion, double dt,
-                                        double stopping, Environment& environment);
+                                        const ContactPace& pace, Environment& environment);
   /// Moves the surface after a step that begin_step() began at displacements `before`; in explicit
   /// steps changes `motion` by impulses.
   ContactStats finish_step(std::optional<ContactStep> step, const Body& body, const Solid& solid,

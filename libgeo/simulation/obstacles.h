@@ -20,7 +20,7 @@ struct ObjectContactStep {
   std::span<const Vec3> surface;  ///< per surface vertex, world: its target
   const State& motion;
   double time, dt;  ///< s
-  double stopping;  ///< s: see SelfContact::begin_step()
+  double stopping;  ///< s: see ContactPace
 };
 
 /// Owns the potentials of objects in contact.

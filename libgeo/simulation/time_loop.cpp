@@ -151,6 +151,7 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
   const State& motion = run_.state.motion;
   // Contact gets softer where nothing is left that may break: its energy falls.
   const double stopping = bonds_.any_left() ? std::min(step.dt, bonds_.shortest_step(nodes)) : step.dt;
+  const double whole = 1 / run_.scene.frame_rate / run_.scene.steps_per_frame();
   const auto begin = [&] {
     const Timed timed(stats.contact_seconds);
     if (obstacles_.any() || bonds_.any()) collisions_.update_weights(run_.body, nodes, motion);
@@ -168,7 +169,8 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
                                  .stopping = stopping},
                                 loads_.environment());
     }
-    contact = collisions_.begin_step(run_.body, nodes, motion, step.dt, stopping, loads_.environment());
+    contact = collisions_.begin_step(run_.body, nodes, motion, step.dt, {.stopping = stopping, .whole_step = whole},
+                                     loads_.environment());
   };
   parallel_invoke([&] { run_.solid.whole(); }, begin);
   return contact;

@@ -17,9 +17,6 @@ constexpr double kept_separation = 0.02;
 // Distance below which pairs are contact candidates, in mean edges: more than kept_separation,
 // because the prediction leaves out the forces of the step.
 constexpr double candidate_distance = 0.05;
-// Share of an existing separation deficit that one step makes good. Making good all of it at once
-// would throw the walls apart.
-constexpr double deficit_share = 0.5;
 // Stiffness over that of the material between two nodes, E / (ρ h²) per mass. A contact is deep by
 // about half of what the material between two nodes is compressed.
 constexpr double relative_stiffness = 2;
@@ -80,7 +77,7 @@ class PenaltyAssembly {
         const bool moves = stencils[i].inverse_mass_a + stencils[i].inverse_mass_b > 0;
         all[i] = {.stencil = moves ? &stencils[i] : nullptr,
                   .normal = c.normal,
-                  .depth = deficit > 0 ? deficit_share * deficit : deficit,
+                  .depth = deficit > 0 ? in_.made_good * deficit : deficit,
                   .stiffness = moves ? stiffness(c, stencils[i]) : 0,
                   .start = weighted_sum(stencils[i].entries, in_.displacement)};
       }

@@ -55,9 +55,9 @@ struct Motion {
 
 /// Resistance of a material to fracture.
 struct Strength {
-  double strength = 1e4;   ///< Pa: largest principal stress, averaged over h, at which a crack starts
-  double toughness = 0;    ///< Pa √m: K_Ic at which a crack grows; 0: strength · √(π h/2), h at the front, of cells
-                           ///< the finest spacing of nodes
+  double strength = 1e4;  ///< Pa: largest principal stress, averaged over h, at which a crack starts
+  double toughness = 0;  ///< Pa √m: K_Ic at which a crack grows; 0: strength · √(π h/2), h at the front, of cells
+                         ///< the finest spacing of nodes
   double variation = 0.2;  ///< both times max(0.05, 1 + variation · noise), noise in about [−1, 1]
   double grain = 0;        ///< length scale of the noise, model units; 0: a tenth of the diagonal of all bodies
   friend bool operator==(const Strength&, const Strength&) = default;

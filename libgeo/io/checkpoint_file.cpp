@@ -131,7 +131,7 @@ void read_cohesion(const KerfFile& file, std::span<const std::uint32_t> bond_of_
   if (file.sections().count("run/glue_laws") == 0) return;
   const auto cracks = file.read<std::uint32_t>("run/glue_cracks");
   const auto pace = file.read<std::uint32_t>("run/glue_pace");
-  if (pace.size() != 2 || pace[0] > most_halvings) file.fail("the time step of breaking bonds is none");
+  if (pace.size() != 2 || pace[0] > max_halvings) file.fail("the time step of breaking bonds is none");
   glued.halvings = pace[0];
   glued.calm = pace[1];
   const auto laws = file.read<double>("run/glue_laws", 2), reached = file.read<double>("run/glue_reached");

@@ -87,7 +87,7 @@ FrameStats TimeLoop::advance_frame(const Progress& progress) {
 // found to be too long is made again, shorter; after some calm steps, they are longer again.
 template <class Time>
 void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
-  constexpr std::uint32_t units = 1u << most_halvings, calm_steps = 4;
+  constexpr std::uint32_t units = 1u << max_halvings, calm_steps = 4;
   GluedBonds& glued = run_.state.glued;
   for (std::uint32_t at = 0; at < units;) {
     const std::uint32_t length = units >> glued.halvings;
@@ -95,7 +95,7 @@ void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
     const double end = next == units ? s + 1 : s + double(next) / units;
     const std::size_t broken = stats.fracture.broken;
     if (!step({.begin = time(s + double(at) / units), .end = time(end), .dt = dt * length / units}, stats)) {
-      glued.halvings = std::min(glued.halvings + 2, most_halvings);
+      glued.halvings = std::min(glued.halvings + 2, max_halvings);
       glued.calm = 0;
       continue;
     }

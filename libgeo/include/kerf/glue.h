@@ -43,7 +43,7 @@ struct GluedBond {
 };
 
 /// How often a time step may be halved at most while bonds break.
-constexpr std::uint32_t most_halvings = 12;
+constexpr std::uint32_t max_halvings = 12;
 
 /// The glued walls of a body.
 struct GluedBonds {

@@ -18,8 +18,8 @@ namespace geo {
 namespace {
 
 constexpr std::size_t vertices_per_task = 1024;
-// Share of an existing separation deficit that a whole step makes good. Making good all of it at once
-// would throw the walls apart.
+// Share of an existing separation deficit that a whole step makes good. Making good all of it at
+// once would throw the walls apart.
 constexpr double deficit_share = 0.5;
 
 // First guess of where vertices can go: what kept them off their targets when the step began is

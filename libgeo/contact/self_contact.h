@@ -41,8 +41,8 @@ struct EmbeddingPlan {
   std::uint64_t revision = 0;  ///< SelfContact::revision() when it was planned
 };
 
-/// Times of contact that are the same for all parts of a time step which is divided: the energy of what
-/// touches would change with them. 0: those of the step.
+/// Times of contact that are the same for all parts of a time step which is divided: the energy of
+/// what touches would change with them. 0: those of the step.
 struct ContactPace {
   double stopping = 0;    ///< s: in which a contact stops what comes at it
   double whole_step = 0;  ///< s: in which half of a separation deficit is made good

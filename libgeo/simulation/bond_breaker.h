@@ -29,14 +29,14 @@ class BondBreaker {
   /// between the sides of a wall.
   bool is_too_long(const Solid& solid, const State& before, const Vec3& gravity, double friction, double dt);
   /// The length below which no step is too long, s: a pressure wave runs through half a wall in it,
-  /// and a wall that opens unloads its neighbours at that speed. Infinite without bonds; it does not
-  /// change when they break.
+  /// and a wall that opens unloads its neighbours at that speed. Infinite without bonds; it does
+  /// not change when they break.
   double shortest_step(const Solid& solid) const;
   /// Opens the walls of all bonds that break in a time step of dt seconds, as one crack. Where that
-  /// is refused, each half of them, down to one bond, which is counted as refused and tried again in
-  /// the next step. Where some have broken, pieces that are joined by less than a node's share of
-  /// area part as well: h², with h the finest spacing. `solid`: with its points up to date; `friction`: between the
-  /// sides of a wall.
+  /// is refused, each half of them, down to one bond, which is counted as refused and tried again
+  /// in the next step. Where some have broken, pieces that are joined by less than a node's share
+  /// of area part as well: h², with h the finest spacing. `solid`: with its points up to date;
+  /// `friction`: between the sides of a wall.
   void step(const Solid& solid, double friction, double dt, FrameStats& stats);
 
  private:

@@ -11,17 +11,17 @@
 namespace geo {
 namespace {
 
-// Time steps in which the traction falls to zero, at least: fewer would spend the energy too early or
-// too late.
+// Time steps in which the traction falls to zero, at least: fewer would spend the energy too early
+// or too late.
 constexpr double steps_of_opening = 4;
 
 CohesiveLaw law_of(const Cohesion& cohesion) { return {.peak = cohesion.peak, .opening = cohesion.opening}; }
 
 }  // namespace
 
-// Two sides that were pulled with a traction σ, and are free, part as far as the material beside them
-// is relieved of its strain: on both sides of the wall as far as a pressure wave has run, and about
-// as far as the wall is wide at last. That is 2 σ / (ρ c²) of this length.
+// Two sides that were pulled with a traction σ, and are free, part as far as the material beside
+// them is relieved of its strain: on both sides of the wall as far as a pressure wave has run, and
+// about as far as the wall is wide at last. That is 2 σ / (ρ c²) of this length.
 CohesiveLaw CohesiveLaw::of(const GluedBond& bond, double limit, const Material& material, double dt) {
   if (bond.toughness == 0) return {};
   const double energy = bond.toughness * bond.toughness * (1 - material.poisson * material.poisson) / material.young;

@@ -23,9 +23,9 @@ struct CohesiveLaw {
 
   /// Share of `opening` at which the traction has its peak.
   static constexpr double rise = 0.1;
-  /// The law of a bond that breaks at the traction `limit`, Pa, with the energy of its toughness for
-  /// plane strain, G = K² (1 − ν²) / E (Irwin 1957). Where time steps of dt seconds would pass over
-  /// the opening, the opening is longer and the peak lower, for the same energy.
+  /// The law of a bond that breaks at the traction `limit`, Pa, with the energy of its toughness
+  /// for plane strain, G = K² (1 − ν²) / E (Irwin 1957). Where time steps of dt seconds would pass
+  /// over the opening, the opening is longer and the peak lower, for the same energy.
   static CohesiveLaw of(const GluedBond& bond, double limit, const Material& material, double dt);
   /// The largest opening so far that the law begins with, model units.
   double first() const { return rise * opening; }

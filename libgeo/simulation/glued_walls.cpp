@@ -16,7 +16,8 @@
 namespace geo {
 namespace {
 
-// Tessellations that are tried. One in some thousands cannot be inserted; another seed is another one.
+// Tessellations that are tried. One in some thousands cannot be inserted; another seed is another
+// one.
 constexpr int attempts = 4;
 
 // Forgets the bonds from `first` on that are not in a body: walls may reach into others.

@@ -63,8 +63,8 @@ struct Strength {
   friend bool operator==(const Strength&, const Strength&) = default;
 };
 
-/// How a body breaks: by cracks that grow with fronts of their own, or along the walls of cells. Those
-/// enclose every piece before it comes off.
+/// How a body breaks: by cracks that grow with fronts of their own, or along the walls of cells.
+/// Those enclose every piece before it comes off.
 struct Breakage : Strength {
   int cells = 0;      ///< of a random tessellation of the body, whose walls break by their load; 0: fronts
   double jagged = 0;  ///< height of the walls' bumps, as a fraction of the body's diagonal

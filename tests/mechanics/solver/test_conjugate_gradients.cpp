@@ -168,7 +168,8 @@ TEST_CASE("accuracy is relative to what forces correct", "[mechanics]") {
   CHECK(of(1e-3, 0.5) == Approx(5e-3));
   CHECK(of(1e-3, 4) == 0.01);
   CHECK(of(0.03, 4) == 0.03);
-  // In contact, by the scene's accuracy of the correction where that is more than ten times gravity's way.
+  // In contact, by the scene's accuracy of the correction where that is more than ten times
+  // gravity's way.
   CHECK(of(1e-6, 1e-4) == 1e-6);
   CHECK(of(1e-6, 0.05) == Approx(5e-5));
   CHECK(of(1e-6, 4) == Approx(4e-3));

@@ -1,24 +1,15 @@
 // Functions of kerf/glue.h.
 #include "kerf/glue.h"
 
+#include <iterator>
 #include <map>
-#include <set>
 #include <unordered_map>
 #include <utility>
 
+#include "kerf/hierarchy.h"
 #include "kerf/pieces.h"
 
 namespace geo {
-namespace {
-
-double area_of(const GluedBond& bond, const std::vector<Vec3>& points) {
-  double area = 0;
-  for (const auto& [a, b, c] : bond.faces) area += 0.5 * (points[b] - points[a]).cross(points[c] - points[a]).norm();
-  return area;
-}
-
-}  // namespace
-
 void measure(GluedBond& bond, const std::vector<Vec3>& points) {
   bond.area = 0;
   bond.normal = bond.centroid = Vec3::Zero();
@@ -32,6 +23,20 @@ void measure(GluedBond& bond, const std::vector<Vec3>& points) {
   if (bond.area > 0) bond.centroid /= bond.area;
   bond.normal.stableNormalize();
 }
+
+namespace {
+
+// Appends bonds by their cells, measured.
+void append(std::map<std::pair<std::uint32_t, std::uint32_t>, GluedBond>& bonds, GluedBonds& glued) {
+  for (auto& [cells, bond] : bonds) {
+    bond.a = cells.first;
+    bond.b = cells.second;
+    measure(bond, glued.points);
+    glued.bonds.push_back(std::move(bond));
+  }
+}
+
+}  // namespace
 
 std::vector<double> glue_crack(Complex& complex, std::int32_t crack, GluedBonds& glued) {
   Pieces pieces = find_pieces(complex);
@@ -55,66 +60,30 @@ std::vector<double> glue_crack(Complex& complex, std::int32_t crack, GluedBonds&
     if (behind > before) std::swap(v[1], v[2]);
     bond.faces.push_back({v[0], v[1], v[2]});
   }
-  for (auto& [cells, bond] : bonds) {
-    bond.a = cells.first;
-    bond.b = cells.second;
-    measure(bond, glued.points);
-    glued.bonds.push_back(std::move(bond));
-  }
+  append(bonds, glued);
   if (!edit.empty()) complex.apply(edit);
   return std::move(pieces.volume);
 }
 
-void join_small_cells(GluedBonds& glued, std::size_t first, std::vector<double> volumes, double least) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, GluedBond> bonds;
-  for (std::size_t b = first; b < glued.bonds.size(); ++b)
-    bonds[{glued.bonds[b].a, glued.bonds[b].b}] = std::move(glued.bonds[b]);
-  std::vector<std::set<std::uint32_t>> neighbors(volumes.size());
-  for (const auto& [cells, bond] : bonds) {
-    if (cells.first == cells.second) continue;
-    neighbors[cells.first].insert(cells.second);
-    neighbors[cells.second].insert(cells.first);
-  }
-  // Faces of a bond run from its lower cell to its higher one.
-  const auto rename = [&](std::uint32_t from, std::uint32_t to, std::uint32_t other) {
-    GluedBond bond = std::move(bonds.extract(std::minmax(from, other)).mapped());
-    if ((from < other) != (to < other))
-      for (Triangle& face : bond.faces) std::swap(face[1], face[2]);
-    GluedBond& joined = bonds[std::minmax(to, other)];
-    joined.faces.insert(joined.faces.end(), bond.faces.begin(), bond.faces.end());
-    neighbors[other].erase(from);
-    neighbors[other].insert(to);
-    neighbors[to].insert(other);
-  };
-  std::set<std::pair<double, std::uint32_t>> small;
-  for (std::uint32_t cell = 0; cell < volumes.size(); ++cell)
-    if (volumes[cell] < least && !neighbors[cell].empty()) small.insert({volumes[cell], cell});
-  while (!small.empty()) {
-    const std::uint32_t cell = small.extract(small.begin()).value().second;
-    std::uint32_t into = cell;
-    double largest = -1;
-    for (const auto other : neighbors[cell]) {
-      const double area = area_of(bonds.at(std::minmax(cell, other)), glued.points);
-      if (area <= largest) continue;
-      largest = area;
-      into = other;
-    }
-    bonds.erase(std::minmax(cell, into));
-    bonds.erase({cell, cell});
-    neighbors[into].erase(cell);
-    for (const auto other : neighbors[cell])
-      if (other != into) rename(cell, into, other);
-    small.erase({volumes[into], into});
-    volumes[into] += volumes[cell];
-    if (volumes[into] < least && !neighbors[into].empty()) small.insert({volumes[into], into});
-  }
+void join_small_cells(GluedBonds& glued, std::size_t first, std::span<const double> volumes, double least) {
+  std::vector<GluedBond> before(std::make_move_iterator(glued.bonds.begin() + static_cast<std::ptrdiff_t>(first)),
+                                std::make_move_iterator(glued.bonds.end()));
   glued.bonds.resize(first);
-  for (auto& [cells, bond] : bonds) {
-    bond.a = cells.first;
-    bond.b = cells.second;
-    measure(bond, glued.points);
-    glued.bonds.push_back(std::move(bond));
+  std::vector<Bond> between;
+  for (const GluedBond& bond : before)
+    if (bond.a != bond.b) between.push_back({.a = bond.a, .b = bond.b, .area = bond.area});
+  const std::vector<std::uint32_t> group = join_small_pieces(volumes, between, least);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, GluedBond> bonds;
+  for (GluedBond& bond : before) {
+    const auto a = group[bond.a], b = group[bond.b];
+    if (a == b && bond.a != bond.b) continue;
+    // Faces of a bond run from its lower cell to its higher one.
+    if (a > b)
+      for (Triangle& face : bond.faces) std::swap(face[1], face[2]);
+    GluedBond& joined = bonds[std::minmax(a, b)];
+    joined.faces.insert(joined.faces.end(), bond.faces.begin(), bond.faces.end());
   }
+  append(bonds, glued);
 }
 
 TriangleMesh sheet_of(const GluedBonds& glued, std::span<const std::uint32_t> bonds) {

@@ -16,7 +16,9 @@
 namespace geo {
 
 BondBreaker::BondBreaker(const Body& body, RunState& state, CrackWriter& writer)
-    : body_(body), state_(state), writer_(writer), breaking_(state.glued) {}
+    : body_(body), state_(state), writer_(writer), breaking_(state.glued) {
+  for (std::uint32_t i = 0; i < state.body_index.size(); ++i) first_node_.try_emplace(state.body_index[i], i);
+}
 
 bool BondBreaker::any_left() const {
   const auto& bonds = state_.glued.bonds;
@@ -99,9 +101,8 @@ bool BondBreaker::is_struck(const Solid& solid, const State& before, const Vec3&
 
 // All nodes of a body of the scene have the same material.
 const Material& BondBreaker::material_of(std::uint32_t of, const Solid& solid) const {
-  const auto& body = state_.body_index;
-  const auto node = static_cast<std::size_t>(std::find(body.begin(), body.end(), of) - body.begin());
-  return solid.materials()[solid.materials().index(node < body.size() ? node : 0)];
+  const auto node = first_node_.find(of);
+  return solid.materials().of(node == first_node_.end() ? 0 : node->second);
 }
 
 void BondBreaker::open(std::span<const std::uint32_t> bonds, const Solid& solid, double dt, FrameStats& stats) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <span>
 
 #include "kerf/simulation.h"
@@ -51,8 +51,9 @@ class BondBreaker {
   CrackWriter& writer_;
   BondBreaking breaking_;
   BondLoads loads_;
-  std::vector<std::uint32_t> node_;  // per bond: the nearest
-  std::uint32_t crack_steps_ = ~0u;  // of the body, when loads_ and node_ were found
+  std::map<std::uint32_t, std::uint32_t> first_node_;  // by body of the scene
+  std::vector<std::uint32_t> node_;                    // per bond: the nearest
+  std::uint32_t crack_steps_ = ~0u;                    // of the body, when loads_ and node_ were found
 };
 
 }  // namespace geo

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "base/union_find.h"
 #include "simulation/strength.h"
 
 namespace geo {
@@ -65,27 +65,24 @@ std::vector<std::uint32_t> BondBreaking::overloaded(std::span<const double> rati
 std::vector<std::uint32_t> BondBreaking::ligaments(const GluedBonds& glued, double least) const {
   std::uint32_t cells = 0;
   for (const GluedBond& bond : glued.bonds) cells = std::max({cells, bond.a + 1, bond.b + 1});
-  std::vector<std::uint32_t> group(cells);
-  std::iota(group.begin(), group.end(), 0u);
-  const auto root = [&](std::uint32_t cell) {
-    while (group[cell] != cell) cell = group[cell] = group[group[cell]];
-    return cell;
+  UnionFind groups(cells);
+  const auto joins_groups = [&](const GluedBond& bond) {
+    return !bond.broken && groups.find(bond.a) != groups.find(bond.b);
   };
-  const auto holds_apart = [&](const GluedBond& bond) { return !bond.broken && root(bond.a) != root(bond.b); };
   for (bool joined = true; joined;) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> area;
     for (const GluedBond& bond : glued.bonds)
-      if (holds_apart(bond)) area[std::minmax(root(bond.a), root(bond.b))] += bond.area;
+      if (joins_groups(bond)) area[std::minmax(groups.find(bond.a), groups.find(bond.b))] += bond.area;
     joined = false;
-    for (const auto& [groups, between] : area) {
+    for (const auto& [pair, between] : area) {
       if (between < least) continue;
-      group[root(groups.second)] = root(groups.first);
+      groups.unite(pair.first, pair.second);
       joined = true;
     }
   }
   std::vector<std::uint32_t> result;
   for (std::uint32_t b = 0; b < glued.bonds.size(); ++b)
-    if (holds_apart(glued.bonds[b]) && is_at_crack(glued, b)) result.push_back(b);
+    if (joins_groups(glued.bonds[b]) && is_at_crack(glued, b)) result.push_back(b);
   return result;
 }
 

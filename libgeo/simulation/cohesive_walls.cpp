@@ -7,6 +7,7 @@
 
 #include "geometry/bvh.h"
 #include "mechanics/terms/contact_law.h"
+#include "simulation/strength.h"
 
 namespace geo {
 namespace {
@@ -25,8 +26,8 @@ CohesiveLaw law_of(const Cohesion& cohesion) { return {.peak = cohesion.peak, .o
 CohesiveLaw CohesiveLaw::of(const GluedBond& bond, double limit, const Material& material, double dt) {
   if (bond.toughness == 0) return {};
   const double energy = bond.toughness * bond.toughness * (1 - material.poisson * material.poisson) / material.young;
-  const double modulus = material.lambda() + 2 * material.mu(), speed = std::sqrt(modulus / material.density);
-  const double relieved = std::min(speed * dt, std::sqrt(bond.area));
+  const double modulus = material.lambda() + 2 * material.mu();
+  const double relieved = std::min(pressure_wave_speed(material) * dt, std::sqrt(bond.area));
   const double opening = std::max(2 * energy / limit, steps_of_opening * 2 * limit / modulus * relieved);
   return {.peak = 2 * energy / opening, .opening = opening};
 }

@@ -111,17 +111,19 @@ void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
 bool TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   run_.state.time = step.begin;
   apply_changes(step.begin);
-  const State start = run_.state.motion;
+  const std::vector<Vec3> before = run_.state.motion.displacement;
+  std::optional<State> start;  // to go back to
+  if (may_break()) start = run_.state.motion;
   loads_.begin_step(step, run_.solid.nodes(), run_.state.motion);
   std::optional<ContactStep> contact = begin_contact(step, stats);
   const StepReport report = move_nodes(step, stats);
-  if (is_too_long(step, start, stats)) {
-    run_.state.motion = start;
-    run_.solid.whole().set_rotations(start);
+  if (start && is_too_long(step, *start, stats)) {
+    run_.state.motion = std::move(*start);
+    run_.solid.whole().set_rotations(run_.state.motion);
     return false;
   }
   take(report, step, stats);
-  move_surface(step, std::move(contact), start.displacement, stats);
+  move_surface(step, std::move(contact), before, stats);
   run_.state.time = step.end;
   cut(step, stats);
   grow_cracks(step.dt, stats);
@@ -131,7 +133,6 @@ bool TimeLoop::step(const TimeStep& step, FrameStats& stats) {
 }
 
 bool TimeLoop::is_too_long(const TimeStep& step, const State& before, FrameStats& stats) {
-  if (!may_break()) return false;
   const TimedRest rest(stats, &FrameStats::fracture_seconds);
   return bonds_.is_too_long(run_.solid.whole(), before, run_.scene.gravity, run_.scene.contact.friction, step.dt);
 }

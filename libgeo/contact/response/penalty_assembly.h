@@ -35,7 +35,7 @@ struct PenaltyInput {
   const std::vector<Vec3>& free_targets;  ///< per surface vertex, at the end of the free motion
   double dt = 0;                          ///< s
   double stopping = 0;                    ///< s: in which a contact stops what comes at it
-  double made_good = 0.5;                 ///< share of an existing separation deficit that the step makes good
+  double made_good = 0;                   ///< share of an existing separation deficit that the step makes good
   double gap = 0;                         ///< distance that surfaces in contact keep, model units
 };
 

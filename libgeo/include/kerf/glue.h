@@ -64,7 +64,7 @@ std::vector<double> glue_crack(Complex& complex, std::int32_t crack, GluedBonds&
 /// Joins each cell smaller than `least`, the smallest first, with the neighbour that shares the
 /// largest area with it: the bonds from `first` on between the two go. Bonds between the same cells
 /// become one. `volumes`: of the cells, as glue_crack() gives them.
-void join_small_cells(GluedBonds& glued, std::size_t first, std::vector<double> volumes, double least);
+void join_small_cells(GluedBonds& glued, std::size_t first, std::span<const double> volumes, double least);
 
 /// The faces of some bonds as one sheet for insert_sheet(). It meets the skin at vertices that the
 /// complex has, so nothing is divided there unless a blade has passed since.

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <sstream>
+#include <tuple>
 
 #include "io/scene_keys.h"
 #include "kerf/check.h"
@@ -212,6 +213,44 @@ void read_pull(TomlTable& t, Scene& s, Files& files) {
   s.pulls.push_back(std::move(pull));
 }
 
+// Corners of a box.
+std::pair<Vec3, Vec3> read_box(TomlTable& t) {
+  const auto* box = t.find("box");
+  if (!box) t.missing("box", "x0, y0, z0, x1, y1, z1");
+  const auto v = t.row(*box, 6, "'" + t.path() + "box'");
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+}
+
+void read_load(TomlTable& t, Scene& s) {
+  Load load;
+  std::tie(load.lo, load.hi) = read_box(t);
+  if (!t.find("traction")) t.missing("traction", "force over area, in Pa");
+  t.get("traction", load.traction);
+  t.get("from", load.from, 0, 1e9);
+  t.get("ramp", load.ramp, 0, 1e9);
+  t.get("until", load.until, 0, 1e9);
+  s.loads.push_back(load);
+}
+
+void read_support(TomlTable& t, Scene& s, Files& files) {
+  Support support;
+  std::tie(support.lo, support.hi) = read_box(t);
+  std::string axes;
+  t.get("axes", axes);
+  if (axes.empty()) t.missing("axes", "those along which the skin is held: \"z\", or \"xy\"");
+  for (const char axis : axes) {
+    if (axis != 'x' && axis != 'y' && axis != 'z')
+      t.fail(*t.find("axes"), "'support.axes' must be made of the letters x, y and z");
+    (axis == 'x' ? support.axes.x : axis == 'y' ? support.axes.y : support.axes.z) = true;
+  }
+  support.motion = read_motion(t, files);
+  for (const Motion::Key& key : support.motion.keys)
+    if (key.angle != 0) t.fail("a support does not turn: its keys have an angle of 0; a [[grip]] may turn");
+  t.get("from", support.from, -1e9, 1e9);
+  t.get("until", support.until, -1e9, 1e9);
+  s.supports.push_back(std::move(support));
+}
+
 // A number where there is one.
 void get(TomlTable& t, const char* key, std::optional<double>& value) {
   if (!t.find(key)) return;
@@ -341,10 +380,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   s.fracture.seed = s.seed;
   top.get("gravity", s.gravity);
   top.list("grip", [&](TomlTable& t) {
-    const auto* box = t.find("box");
-    if (!box) t.missing("box", "x0, y0, z0, x1, y1, z1");
-    const auto v = t.row(*box, 6, "'grip.box'");
-    Grip grip{.lo = {v[0], v[1], v[2]}, .hi = {v[3], v[4], v[5]}, .motion = read_motion(t, files), .release = false};
+    const auto [lo, hi] = read_box(t);
+    Grip grip{.lo = lo, .hi = hi, .motion = read_motion(t, files), .release = false};
     t.get("release", grip.release);
     t.get("from", grip.from, -1e9, 1e9);
     t.get("until", grip.until, -1e9, 1e9);
@@ -352,6 +389,8 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   });
   top.list("blade", [&](TomlTable& t) { read_blade(t, s, files); });
   top.list("pull", [&](TomlTable& t) { read_pull(t, s, files); });
+  top.list("load", [&](TomlTable& t) { read_load(t, s); });
+  top.list("support", [&](TomlTable& t) { read_support(t, s, files); });
   top.list("change", [&](TomlTable& t) { read_change(t, s); });
   top.list("obstacle", [&](TomlTable& t) { read_obstacle(t, s, files); });
   top.list("score", [&](TomlTable& t) { read_score(t, s, files); });

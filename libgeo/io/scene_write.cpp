@@ -75,6 +75,8 @@ class SceneWriter {
   void grip(const Grip& g);
   void blade(const Blade& b);
   void pull(const Pull& p);
+  void load(const Load& l);
+  void support(const Support& s);
   void obstacle(const SceneObstacle& o);
   void change(const SceneChange& c);
   void time(const Scene& s);
@@ -195,6 +197,24 @@ void SceneWriter::pull(const Pull& p) {
   keys(p.motion);
 }
 
+void SceneWriter::load(const Load& l) {
+  table("[[load]]");
+  key("box", row({l.lo.x(), l.lo.y(), l.lo.z(), l.hi.x(), l.hi.y(), l.hi.z()}));
+  key("traction", l.traction);
+  key("from", l.from);
+  key("ramp", l.ramp);
+  if (std::isfinite(l.until)) key("until", l.until);
+}
+
+void SceneWriter::support(const Support& s) {
+  table("[[support]]");
+  key("box", row({s.lo.x(), s.lo.y(), s.lo.z(), s.hi.x(), s.hi.y(), s.hi.z()}));
+  key("axes", quoted(std::string(s.axes.x ? "x" : "") + (s.axes.y ? "y" : "") + (s.axes.z ? "z" : "")));
+  if (std::isfinite(s.from)) key("from", s.from);
+  if (std::isfinite(s.until)) key("until", s.until);
+  if (!s.motion.keys.empty()) keys(s.motion);
+}
+
 void SceneWriter::obstacle(const SceneObstacle& o) {
   table("[[obstacle]]");
   key("name", quoted(o.name));
@@ -267,6 +287,8 @@ void SceneWriter::write(const Scene& s) {
   for (const SceneObstacle& o : s.obstacles) obstacle(o);
   for (const Blade& b : s.blades) blade(b);
   for (const Pull& p : s.pulls) pull(p);
+  for (const Load& l : s.loads) load(l);
+  for (const Support& support : s.supports) this->support(support);
   for (const SceneChange& c : s.changes) change(c);
 }
 

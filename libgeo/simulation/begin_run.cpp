@@ -1,11 +1,13 @@
 // begin_run() of kerf/simulation.h. Order: sample and build the body, insert the prescored cracks,
 // then assign velocities. Nodes that a crack inserts belong to the body of their donor.
 #include <algorithm>
+#include <utility>
 
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/simulation.h"
 #include "simulation/crack_writer.h"
+#include "simulation/fracture_front.h"
 #include "simulation/glued_walls.h"
 #include "simulation/next_crack.h"
 #include "simulation/scene_body.h"
@@ -45,7 +47,8 @@ CrackEdit sheet_edit(const Prescoring& to, const SceneScore& score, std::int32_t
   return edit_to(std::move(scored));
 }
 
-// Inserts the scene's prescored cracks: fronts step by step, sheets whole.
+// Inserts the scene's prescored cracks: fronts step by step, sheets whole. Where bodies break by
+// stress, a front that ends in the material goes on by its load.
 void prescore(const Prescoring& to, const Progress& progress) {
   const Scene& scene = to.scene;
   RunStart& run = to.run;
@@ -60,15 +63,17 @@ void prescore(const Prescoring& to, const Progress& progress) {
         throw GeometryError("the prescored sheet '" + front.name + "' cannot be inserted");
       continue;
     }
-    FrontState state = begin_front(front.steps.at(0), front.closed, crack);
+    FrontState state = begin_front(front.steps.at(0), front.closed, crack), before = state;
     for (std::size_t k = 1; k < front.steps.size(); ++k) {
       report(progress, "prescoring", s, scene.scores.size());
       auto written = writer.write(state, resample_front(front.steps[0], front.steps[k], front.closed), unused);
       if (!written)
         throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name +
                             "' cannot be made");
-      state = std::move(written->front);
+      before = std::exchange(state, std::move(written->front));
     }
+    if (!scene.fracture.on || !scene.fracture.of_body(scene.scores[s].body).has_fronts()) continue;
+    if (auto grows = growing_after(before, std::move(state))) run.state.fracture.fronts.push_back(std::move(*grows));
   }
 }
 

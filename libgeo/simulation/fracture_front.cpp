@@ -68,6 +68,39 @@ GrowingFront growing(FrontState front, std::vector<Vec3> normals) {
   return g;
 }
 
+std::optional<GrowingFront> growing_after(const FrontState& before, FrontState after) {
+  const std::size_t n = after.points.size();
+  if (before.points.size() != n) return {};
+  std::vector<Vec3> normals(n, Vec3::Zero());
+  Vec3 mean = Vec3::Zero();
+  const bool closed = after.closed;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t last = i > 0 ? i - 1 : closed ? n - 1 : 0, next = i + 1 < n ? i + 1 : closed ? 0 : n - 1;
+    const Vec3 along = after.points[next].position - after.points[last].position;
+    normals[i] = unit_or((after.points[i].position - before.points[i].position).cross(along), Vec3::Zero());
+    mean += normals[i];
+  }
+  if (!(mean.norm() > 0)) return {};
+  for (Vec3& normal : normals)
+    if (normal.isZero()) normal = mean.normalized();
+  GrowingFront front = growing(std::move(after), std::move(normals));
+  for (std::size_t i = 0; i < n; ++i)
+    if (front.live(i)) return front;
+  return {};
+}
+
+CrackTip tip_of(const GrowingFront& front) {
+  CrackTip tip{.crack = front.front.crack, .at = Vec3::Zero(), .length = front.length};
+  double live = 0;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    if (!front.live(i)) continue;
+    tip.at += front.front.points[i].position;
+    ++live;
+  }
+  if (live > 0) tip.at /= live;
+  return tip;
+}
+
 namespace {
 
 // A point that a plan adds beyond an end of the front, and whether it lies at or beyond a surface.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -18,6 +19,14 @@ TipFrame tip_frame(const GrowingFront& front, std::size_t i);
 /// A growing front from one that begin_front() or a blade leaves, with a unit crack normal for each
 /// point, material coordinates. Throws InputError where their numbers differ.
 GrowingFront growing(FrontState front, std::vector<Vec3> normals);
+
+/// The growing front of a crack that a front has cut by its steps; crack normals are across its last
+/// step, from `before` to `after`, which have the same points. Empty where it has not moved, or no
+/// point is in the material.
+std::optional<GrowingFront> growing_after(const FrontState& before, FrontState after);
+
+/// Where a front is now; at the origin where none of its points is in the material.
+CrackTip tip_of(const GrowingFront& front);
 
 /// Next positions of a front. Entry k starts at point from[k] of the front and moves to next[k].
 /// Several entries may start at one point: points are inserted there. Equal neighbours are merged

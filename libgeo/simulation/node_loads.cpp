@@ -54,6 +54,7 @@ void NodeLoads::end_step(const TimeStep& step, double share, State& motion, Fram
   const auto on_blades = wedges_.reaction(motion.displacement, scene_.blades.size());
   for (std::size_t b = 0; b < on_blades.size(); ++b) stats.blade_force[b] += share * on_blades[b];
   stats.pull_force.resize(scene_.pulls.size(), Vec3::Zero());
+  stats.work += pulls_.work(motion.displacement);
   const auto on_pulls = pulls_.reaction(motion.displacement, scene_.pulls.size());
   for (std::size_t p = 0; p < on_pulls.size(); ++p) stats.pull_force[p] += share * on_pulls[p];
 }

@@ -90,4 +90,13 @@ std::vector<Vec3> PullPotential::reaction(const std::vector<Vec3>& u, std::size_
   return force;
 }
 
+double PullPotential::work(const std::vector<Vec3>& u) const {
+  double work = 0;
+  for (std::size_t k = 0; k < springs_.size(); ++k) {
+    const Spring& s = springs_[k];
+    work -= s.stiffness * s.stretch(weighted_sum(stencil(k), u)).dot(s.end - s.begin);
+  }
+  return work;
+}
+
 }  // namespace geo

@@ -46,6 +46,8 @@ class PullPotential : public Potential {
 
   /// Force of the material on each of `pulls` ends at displacements u, N; zero where none acts.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t pulls) const;
+  /// Work of the moving ends on the material in the step, by the forces at displacements u, J.
+  double work(const std::vector<Vec3>& u) const;
 
  private:
   struct Spring {

@@ -1,4 +1,4 @@
-// Poses of blades and obstacles of kerf/scene.h. World = motion · place: a keyframed motion is
+// Poses of blades and obstacles of kerf/scene.h, and its lists. World = motion · place: a keyframed motion is
 // applied after the pose at rest.
 #include "kerf/scene.h"
 
@@ -18,6 +18,11 @@ std::vector<Vec3> Blade::at(double time) const {
 Pose SceneObstacle::pose(double time) const {
   const Pose moved = motion.at(time);
   return {moved * place.position, moved.rotation * place.rotation};
+}
+
+double Load::share(double time) const {
+  if (time <= from || time > until) return 0;
+  return ramp > 0 ? std::min(1.0, (time - from) / ramp) : 1.0;
 }
 
 void Scene::add_change(SceneChange change) {

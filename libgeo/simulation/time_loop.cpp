@@ -49,7 +49,8 @@ TimeLoop::TimeLoop(RunData& run)
           CrackFollowers{
               .solid = run.solid, .motion = run.state.motion, .way = way_, .collisions = collisions_, .loads = loads_}),
       cuts_(run.scene, run.body, run.state, writer_),
-      bonds_(run.body, run.state, writer_) {
+      bonds_(run.body, run.state, writer_),
+      skin_(run.scene, run.body) {
   hold_material(run.state.time);
   apply_changes(run.state.time);
 }
@@ -79,6 +80,7 @@ FrameStats TimeLoop::advance_frame(const Progress& progress) {
   stats.sheet.crumbs = writer_.crumbs();
   stats.kinetic = run_.solid.nodes().kinetic_energy(state.motion);
   stats.weight = weight_energy(run_.solid.nodes(), scene.gravity, state.motion.displacement);
+  for (const GrowingFront& front : state.fracture.fronts) stats.fracture.tips.push_back(tip_of(front));
   state.total += stats;
   return stats;
 }
@@ -155,7 +157,9 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
   const double whole = 1 / run_.scene.frame_rate / run_.scene.steps_per_frame();
   const auto begin = [&] {
     const Timed timed(stats.contact_seconds);
-    if (obstacles_.any() || bonds_.any()) collisions_.update_weights(run_.body, nodes, motion);
+    if (obstacles_.any() || bonds_.any() || skin_.any()) collisions_.update_weights(run_.body, nodes, motion);
+    if (skin_.any()) skin_.begin_step(step, run_.body, nodes, collisions_.weights());
+    if (!skin_.empty()) loads_.environment().contact.push_back(&skin_);
     cohesion_.begin_step(run_.body, run_.state.glued, collisions_.weights());
     if (!cohesion_.empty()) loads_.environment().contact.push_back(&cohesion_);
     if (obstacles_.any()) {
@@ -198,6 +202,7 @@ void TimeLoop::take(const StepReport& report, const TimeStep& step, FrameStats& 
   loads_.end_step(step, share, motion, stats);
   stats.fracture.spent += cohesion_.end_step(motion.displacement, run_.state.glued);
   obstacles_.add_reactions(motion, share, stats);
+  if (skin_.any()) skin_.end_step(motion.displacement, share, stats);
   ++stats.steps;
   stats.energy = report.energy;
 }

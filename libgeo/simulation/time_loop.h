@@ -15,6 +15,7 @@
 #include "simulation/node_loads.h"
 #include "simulation/obstacles.h"
 #include "simulation/run_data.h"
+#include "simulation/skin_loads.h"
 
 namespace geo {
 
@@ -22,7 +23,8 @@ namespace geo {
 /// RunData::restore() a new loop takes its place.
 class TimeLoop {
  public:
-  /// Goes on from the run's time. Throws InputError where the run's surface does not fit its body.
+  /// Goes on from the run's time. Throws InputError where the run's surface does not fit its body,
+  /// or a load of the scene has no skin to act on.
   explicit TimeLoop(RunData& run);
 
   /// See Simulation::advance_frame().
@@ -59,6 +61,7 @@ class TimeLoop {
   BladeCuts cuts_;
   BondBreaker bonds_;
   CohesiveWalls cohesion_;
+  SkinLoads skin_;
 };
 
 }  // namespace geo

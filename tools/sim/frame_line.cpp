@@ -79,6 +79,15 @@ std::string line_of(const FrameOutcome& o, std::size_t crossings) {
   for (std::size_t k = 0; k < o.stats.obstacle_force.size(); ++k)
     line += std::string(k ? "," : "") + "{\"force\":" + vector(o.stats.obstacle_force[k]) +
             ",\"torque\":" + vector(o.stats.obstacle_torque[k]) + "}";
+  line += "],\"work\":" + tool::number(o.stats.work) + ",\"supports\":[";
+  for (std::size_t k = 0; k < o.stats.support_force.size(); ++k)
+    line += (k ? "," : "") + vector(o.stats.support_force[k]);
+  line += "],\"tips\":[";
+  for (std::size_t k = 0; k < o.stats.fracture.tips.size(); ++k) {
+    const geo::CrackTip& tip = o.stats.fracture.tips[k];
+    line += std::string(k ? "," : "") + "{\"crack\":" + std::to_string(tip.crack) + ",\"at\":" + vector(tip.at) +
+            ",\"length\":" + tool::number(tip.length) + "}";
+  }
   return line + "]";
 }
 

@@ -134,6 +134,36 @@ struct Pull {
   double stiffness = 100;  ///< force over stretch, N/m
 };
 
+/// A force over area on the skin in a box, as a pressure or a testing machine exerts it. Faces of cracks have
+/// none.
+struct Load {
+  Vec3 lo, hi;                                             ///< corners of the box, material coordinates
+  Vec3 traction = Vec3::Zero();                            ///< Pa: over undeformed area; keeps its direction
+  double from = 0;                                         ///< s: it begins
+  double ramp = 0;                                         ///< s from then on in which it grows, linearly
+  double until = std::numeric_limits<double>::infinity();  ///< s: it ends
+  /// The share of the traction that acts at a time, from 0 to 1.
+  double share(double time) const;
+};
+
+/// The skin in a box is held along some axes of the world, and is free along the others: a roller,
+/// a plane of symmetry, or the jaws of a testing machine.
+struct Support {
+  /// Which axes.
+  struct Axes {
+    bool x = false, y = false, z = false;
+    /// Whether axis 0, 1 or 2 is held.
+    bool operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
+  };
+  Vec3 lo, hi;         ///< corners of the box, material coordinates
+  Axes axes = {};      ///< one at least
+  Motion motion = {};  ///< only its way counts, relative to the place at rest; no keys: at rest
+  double from = -std::numeric_limits<double>::infinity();  ///< s: the support exists after this time
+  double until = std::numeric_limits<double>::infinity();  ///< s: and up to this time
+  /// Whether the support exists at the end of a time step.
+  bool active(double time) const { return time > from && time <= until; }
+};
+
 /// Values of a scene that change at a time. Those that are not given stay.
 struct SceneChange {
   double time = 0;                      ///< s: from the first time step on that begins then or later
@@ -202,6 +232,8 @@ struct Scene {
   std::vector<SceneScoreFile> score_files;  ///< that `scores` were read from
   std::vector<Grip> grips;
   std::vector<Pull> pulls;
+  std::vector<Load> loads;
+  std::vector<Support> supports;
   std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides
   bool ground = false;               ///< whether there is a rigid ground plane
   Vec3 ground_point = Vec3::Zero(), ground_normal = Vec3::UnitZ();

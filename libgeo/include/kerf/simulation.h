@@ -51,15 +51,23 @@ struct FractureState {
   std::int32_t cracks = 0;           ///< number of cracks started so far, branches included
 };
 
+/// Where a growing front is.
+struct CrackTip {
+  std::int32_t crack = 0;  ///< number of the crack behind it
+  Vec3 at = Vec3::Zero();  ///< mean of its points in the material, material coordinates
+  double length = 0;       ///< largest growth of a point since the front started or branched, model units
+};
+
 /// Statistics of fracture by stress.
 struct FractureStats {
-  std::size_t begun = 0;     ///< cracks started
-  std::size_t divided = 0;   ///< branches
-  std::size_t advanced = 0;  ///< steps of fronts
-  std::size_t refused = 0;   ///< steps that could not be made
-  std::size_t broken = 0;    ///< glued bonds broken
-  double broken_area = 0;    ///< of these, undeformed, model units²
-  double spent = 0;          ///< energy that the tractions of broken bonds have taken, J
+  std::size_t begun = 0;            ///< cracks started
+  std::size_t divided = 0;          ///< branches
+  std::size_t advanced = 0;         ///< steps of fronts
+  std::size_t refused = 0;          ///< steps that could not be made
+  std::size_t broken = 0;           ///< glued bonds broken
+  double broken_area = 0;           ///< of these, undeformed, model units²
+  double spent = 0;                 ///< energy that the tractions of broken bonds have taken, J
+  std::vector<CrackTip> tips = {};  ///< fronts at the frame's end
 };
 
 /// Shape of the sheets that blades cut. Largest values of the frame, or of the run.
@@ -92,10 +100,12 @@ struct FrameStats {
   double kinetic = 0;                 ///< kinetic energy, J, at the frame's end
   double weight = 0;                  ///< energy of weight, J, at the frame's end; 0 where nothing has moved
   std::vector<Vec3> blade_force;      ///< per blade: exerted by the material, N, mean over the frame
+  double work = 0;                    ///< of loads, supports and pulls on the bodies, J
+  std::vector<Vec3> support_force;    ///< per support: exerted by the material along its axes, N, mean over the frame
   std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
   std::vector<Vec3> obstacle_force;   ///< per obstacle, then the ground: exerted by the bodies, N, mean
   std::vector<Vec3> obstacle_torque;  ///< likewise: about the obstacle's origin, N m
-  /// Adds counts and seconds; takes energy, forces and crumbs of `o`, and the larger deviation and
+  /// Adds counts, seconds, work; takes energy, forces, tips and crumbs of `o`, the larger deviation and
   /// turning.
   FrameStats& operator+=(const FrameStats& o);
   /// Seconds of all phases of cutting.

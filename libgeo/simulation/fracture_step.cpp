@@ -12,6 +12,7 @@
 #include "simulation/fracture_ligaments.h"
 #include "simulation/fracture_start.h"
 #include "simulation/fracture_tip.h"
+#include "simulation/interaction_integral.h"
 #include "simulation/strength.h"
 
 namespace geo {
@@ -70,11 +71,13 @@ FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
   std::vector<TipFrame> frame(n);
   std::vector<std::uint8_t> resolved(n, 0);
   std::vector<std::uint32_t> node(n, 0);
+  const InteractionIntegral integral(in.body, in.solid, in.motion);
   parallel_for(n, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       frame[i] = tip_frame(g, i);
       if (!g.live(i) || !may_break(in.options, frame[i].at)) continue;
-      const TipField field = tip_field(in.body, in.motion.displacement, in.solid.materials(), frame[i]);
+      const TipField field = tip_field(in.body, in.motion.displacement, in.solid.materials(), frame[i],
+                                       [&](const Mat3& rotation) { return integral.at(g, i, rotation); });
       resolved[i] = field.nodes >= least_nodes;
       node[i] = field.node;
       if (!resolved[i]) continue;

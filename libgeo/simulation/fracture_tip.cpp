@@ -26,6 +26,19 @@ Mat3 mode_displacement(const Material& m, double r, double angle) {
   return u;
 }
 
+// u = √r f(θ) has the derivative cos θ f / (2 √r) − sin θ f′ / √r ahead.
+Mat3 mode_slope(const Material& m, double r, double angle) {
+  const double c = std::cos(angle / 2), s = std::sin(angle / 2), kappa = 3 - 4 * m.poisson;
+  Mat3 turned;  // f′, in the scale of mode_displacement(m, 1, angle)
+  turned.col(0) =
+      Vec3(-s / 2 * (kappa - 1 + 2 * s * s) + 2 * s * c * c, c / 2 * (kappa + 1 - 2 * c * c) + 2 * s * s * c, 0);
+  turned.col(1) =
+      Vec3(c / 2 * (kappa + 1 + 2 * c * c) - 2 * s * s * c, s / 2 * (kappa - 1 - 2 * s * s) + 2 * s * c * c, 0);
+  turned.col(2) = Vec3(0, 0, 2 * c);
+  turned *= std::sqrt(1 / (2 * std::numbers::pi)) / (2 * m.mu());
+  return (0.5 * std::cos(angle) * mode_displacement(m, 1, angle) - std::sin(angle) * turned) / std::sqrt(r);
+}
+
 // The same fields' stress, f(angle) / √(2 π r); σ_zz = ν (σ_xx + σ_yy) in plane strain.
 Mat3 mode_stress(double poisson, int mode, double r, double angle) {
   const double c = std::cos(angle / 2), s = std::sin(angle / 2), c3 = std::cos(1.5 * angle), s3 = std::sin(1.5 * angle);
@@ -144,7 +157,8 @@ Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material
 
 }  // namespace
 
-TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip) {
+TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip,
+                   const Intensities& intensities) {
   const Neighborhood near = nodes_about(body, tip);
   TipField field;
   field.nodes = near.nodes.size();
@@ -164,6 +178,15 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
     const Vec3 x = body.nodes.position[near.nodes[j]] - tip.at;
     v[j] = rotation.transpose() * (x + v[j]) - x;
   }
+  const double cracked = crack_behind(body.surface, tip, near.support);
+  // Along a resolved crack its singular field alone decides: the stress along it would turn it by an
+  // angle that depends on the spacing of nodes.
+  if (cracked == 1 && intensities) {
+    if (const std::optional<Vec3> known = intensities(rotation)) {
+      field.k = *known;
+      return field;
+    }
+  }
   // Fifteen unknowns, three equations per node: five nodes determine them, eight leave nine more
   // equations for the fit.
   const int modes = field.nodes >= 8 ? 3 : 0;
@@ -177,8 +200,7 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
   if (modes == 0) return field;
   field.k = scale * c.tail<3>();
   // Crack faces carry no traction σ n: only the uncracked share behind the tip keeps it.
-  const double open = 1 - crack_behind(body.surface, tip, near.support);
-  const Vec3 traction = open * field.uniform.col(1);
+  const Vec3 traction = (1 - cracked) * field.uniform.col(1);
   field.uniform.col(1) = traction;
   field.uniform.row(1) = traction.transpose();
   return field;

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "kerf/body.h"
@@ -48,12 +50,21 @@ struct TipField {
 /// squares (moving least squares enriched with the modes: Fleming, Chu, Moran and Belytschko 1997).
 /// Exact where the nodes move as linear elasticity predicts. The crack faces carry no traction: by
 /// the share of crack straight behind the tip, the uniform stress loses its traction on them
-/// (Williams' second term remains). `u`: displacement per node.
-TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip);
+/// (Williams' second term remains). `u`: displacement per node. `intensities`, where given, finds
+/// the stress intensities from the rotation of the material at the tip, where there is crack from
+/// one support radius to three straight behind it; there is no uniform part then. Where it is empty,
+/// all is fitted. A fit takes the gradient of stress in bending for a part of the modes: it
+/// is up to a third too high where twenty spacings or less lie across a body.
+using Intensities = std::function<std::optional<Vec3>(const Mat3& rotation)>;
+TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip,
+                   const Intensities& intensities = {});
 
 /// Displacements at (r, angle) of unit stress intensities, plane strain, in the tip's frame: one
 /// column for each mode.
 Mat3 mode_displacement(const Material& material, double r, double angle);
+
+/// The derivatives of mode_displacement() in the direction ahead, dimensionless over Pa √m.
+Mat3 mode_slope(const Material& material, double r, double angle);
 
 /// Stress at (r, angle) of a unit stress intensity of mode 0, 1 or 2, in the tip's frame.
 Mat3 mode_stress(double poisson, int mode, double r, double angle);

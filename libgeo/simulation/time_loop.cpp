@@ -86,7 +86,8 @@ FrameStats TimeLoop::advance_frame(const Progress& progress) {
 }
 
 // Makes the s-th time step of a frame, halved as often as breaking bonds need it. A step that is
-// found to be too long is made again, shorter; after some calm steps, they are longer again.
+// found to be too long, or that Newton's method does not find, is made again, shorter; after some
+// calm steps, they are longer again.
 template <class Time>
 void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
   constexpr std::uint32_t units = 1u << max_halvings, calm_steps = 4;
@@ -96,8 +97,10 @@ void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
     const std::uint32_t next = at + length;
     const double end = next == units ? s + 1 : s + double(next) / units;
     const std::size_t broken = stats.fracture.broken;
-    if (!step({.begin = time(s + double(at) / units), .end = time(end), .dt = dt * length / units}, stats)) {
-      glued.halvings = std::min(glued.halvings + 2, max_halvings);
+    const Outcome outcome =
+        step({.begin = time(s + double(at) / units), .end = time(end), .dt = dt * length / units}, stats);
+    if (outcome != Outcome::taken) {
+      glued.halvings = std::min(glued.halvings + (outcome == Outcome::too_long ? 2 : 1), max_halvings);
       glued.calm = 0;
       continue;
     }
@@ -109,8 +112,8 @@ void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
   }
 }
 
-// False: the step is too long for what breaks in it. All is as before it.
-bool TimeLoop::step(const TimeStep& step, FrameStats& stats) {
+// Too long: for what breaks in it. Not found: by Newton's method.
+TimeLoop::Outcome TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   run_.state.time = step.begin;
   apply_changes(step.begin);
   const std::vector<Vec3> before = run_.state.motion.displacement;
@@ -119,10 +122,10 @@ bool TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   loads_.begin_step(step, run_.solid.nodes(), run_.state.motion);
   std::optional<ContactStep> contact = begin_contact(step, stats);
   const StepReport report = move_nodes(step, stats);
-  if (start && is_too_long(step, *start, stats)) {
+  if (start && (!report.converged || is_too_long(step, *start, stats))) {
     run_.state.motion = std::move(*start);
     run_.solid.whole().set_rotations(run_.state.motion);
-    return false;
+    return report.converged ? Outcome::too_long : Outcome::not_found;
   }
   take(report, step, stats);
   move_surface(step, std::move(contact), before, stats);
@@ -131,7 +134,7 @@ bool TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   grow_cracks(step.dt, stats);
   break_bonds(step.dt, stats);
   require_finite(run_.state);
-  return true;
+  return Outcome::taken;
 }
 
 bool TimeLoop::is_too_long(const TimeStep& step, const State& before, FrameStats& stats) {
@@ -188,7 +191,10 @@ StepReport TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
   hold_material(step.end);
   Solid& solid = run_.solid.whole();
   const Environment& environment = loads_.environment();
-  const StepReport report = scene.implicit ? solid.step_implicit(motion, step.dt, environment, scene.accuracy)
+  // What touches at the begin of a part of a step is found anew, unlike for its substeps.
+  const bool may_be_divided = may_break() && run_.state.glued.halvings < max_halvings;
+  const StepReport report = scene.implicit ? solid.step_implicit(motion, step.dt, environment, scene.accuracy,
+                                                                 may_be_divided ? Division::refused : Division::allowed)
                                            : solid.step_explicit(motion, step.dt, environment);
   stats.newton += static_cast<std::size_t>(report.newton);
   stats.cg += static_cast<std::size_t>(report.cg);

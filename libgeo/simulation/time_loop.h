@@ -38,7 +38,9 @@ class TimeLoop {
   void apply_changes(double time);
   template <class Time>
   void advance(int step, double dt, const Time& time, FrameStats& stats);
-  bool step(const TimeStep& step, FrameStats& stats);
+  // What became of a time step. One that was not taken has changed nothing.
+  enum class Outcome { taken, too_long, not_found };
+  Outcome step(const TimeStep& step, FrameStats& stats);
   std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);
   StepReport move_nodes(const TimeStep& step, FrameStats& stats);
   void take(const StepReport& report, const TimeStep& step, FrameStats& stats);

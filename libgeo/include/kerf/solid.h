@@ -50,6 +50,9 @@ struct StepReport {
   int cg = 0;         ///< iterations of conjugate gradients, over all Newton iterations
   int substeps = 0;   ///< time steps that the step was divided into
   double energy = 0;  ///< elastic energy after the step, J; of the implicit step to second order in the last direction
+  /// False: Newton's method has not found the step, and the state is as before. Only where the
+  /// step was not to be divided.
+  bool converged = true;
 };
 
 /// Numbers of nodes and of material points by the quality of their moment matrix: 0
@@ -60,6 +63,9 @@ struct MomentQualityCounts {
   std::size_t points[3] = {};  ///< by quality
   std::size_t widened = 0;     ///< points whose support had to be widened
 };
+
+/// Whether an implicit step may be divided where Newton's method does not find it.
+enum class Division { allowed, refused };
 
 /// The discretised solid and its time integrators. Copies are deep.
 class Solid {
@@ -136,7 +142,9 @@ class Solid {
   /// which changes its time and not its result.
   /// \param dt  s
   /// \param accuracy  of displacements, relative to the spacing of nodes
-  StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3);
+  /// \param division  whether it is, or given up: StepReport::converged
+  StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3,
+                           Division division = Division::allowed);
   /// Advances a state with symplectic Euler, in as many substeps as the fastest wave requires;
   /// twice as many where energy would rise.
   /// \param dt  s

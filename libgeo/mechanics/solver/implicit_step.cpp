@@ -20,6 +20,7 @@ struct WholeStep {
   double dt;
   const Environment& environment;
   double accuracy;
+  Division division;
   SolverCache& cache;
   StepReport& report;
 };
@@ -32,7 +33,12 @@ void advance(const WholeStep& whole, double from, double h) {
   const StepProblem problem{
       .solid = whole.solid, .start = state, .dt = h, .environment = whole.environment, .accuracy = whole.accuracy};
   NewtonSolver solver(problem, whole.cache);
-  if (!solver.solve(whole.report) && h > whole.dt * shortest_substep) {
+  const bool found = solver.solve(whole.report);
+  if (!found && whole.division == Division::refused) {
+    whole.report.converged = false;
+    return;
+  }
+  if (!found && h > whole.dt * shortest_substep) {
     advance(whole, from, h / 2);
     advance(whole, from + h / 2, h / 2);
     return;
@@ -50,7 +56,8 @@ void advance(const WholeStep& whole, double from, double h) {
 
 }  // namespace
 
-StepReport Solid::step_implicit(State& state, double dt, const Environment& environment, double accuracy) {
+StepReport Solid::step_implicit(State& state, double dt, const Environment& environment, double accuracy,
+                                Division division) {
   StepReport report;
   const SolidDiscretisation& solid = *discretisation_;
   advance({.solid = solid,
@@ -58,9 +65,11 @@ StepReport Solid::step_implicit(State& state, double dt, const Environment& envi
            .dt = dt,
            .environment = environment,
            .accuracy = accuracy,
+           .division = division,
            .cache = *cache_,
            .report = report},
           0, dt);
+  if (!report.converged) return report;
   if (solid.is_plastic()) report.energy = solid.elastic_energy(state.displacement, nullptr, solid.relaxation_of(state));
   keep_debris_rigid(solid, environment.fixed, state);
   set_rotations(state);

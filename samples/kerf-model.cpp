@@ -1,6 +1,7 @@
 // kerf-model: writes the procedural models of the samples, and fronts that halve a model.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include <kerf/error.h>
@@ -48,6 +49,14 @@ geo::TriangleMesh make_bowl(int frequency) {
   return mesh;
 }
 
+geo::Vec3 size_of(const std::string& text) {
+  double x = 0, y = 0, z = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &z, &rest) != 3)
+    throw tool::UsageError("--size '" + text + "' is not X,Y,Z");
+  return {x, y, z};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -55,12 +64,13 @@ int main(int argc, char** argv) {
                R"(  kerf-model pumpkin --frequency 22 -o pumpkin.ply
   kerf-model letter --text K -o k.ply
   kerf-model front --around bear.off --steps 12 -o halve.front)");
-  std::string kind, text = "K", around;
+  std::string kind, text = "K", around, size = "2,1,1";
   int frequency = 22, resolution = 24, steps = 12, points = 24;
   double edge = 0.1, depth = 0.25, bend = 0.06, tilt = 7;
   t.argument("KIND", kind, "pumpkin, apple, polyp, sphere, bowl, block, plate, letter, or front");
   t.option("--frequency", frequency, "Of pumpkin, apple, polyp, sphere: 20 f^2 triangles; of a bowl: 64 f^2");
-  t.option("--edge", edge, "Of a block (2 x 1 x 1) or plate (2 x 1 x 0.12): longest edge along an axis");
+  t.option("--size", size, "Of a block: X,Y,Z");
+  t.option("--edge", edge, "Of a block or plate (2 x 1 x 0.12): longest edge along an axis");
   t.option("--text", text, "Of a letter: A to Z");
   t.option("--depth", depth, "Of a letter");
   t.option("--resolution", resolution, "Of a letter: cells per unit of height");
@@ -113,7 +123,7 @@ int main(int argc, char** argv) {
     else if (kind == "bowl")
       mesh = make_bowl(std::max(1, frequency));
     else if (kind == "block")
-      mesh = geo::make_block({2, 1, 1}, edge);
+      mesh = geo::make_block(size_of(size), edge);
     else if (kind == "plate")
       mesh = geo::make_block({2, 1, 0.12}, edge);
     else if (kind == "letter" && text.size() == 1)

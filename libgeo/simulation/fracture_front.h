@@ -20,9 +20,9 @@ TipFrame tip_frame(const GrowingFront& front, std::size_t i);
 /// point, material coordinates. Throws InputError where their numbers differ.
 GrowingFront growing(FrontState front, std::vector<Vec3> normals);
 
-/// The growing front of a crack that a front has cut by its steps; crack normals are across its last
-/// step, from `before` to `after`, which have the same points. Empty where it has not moved, or no
-/// point is in the material.
+/// The growing front of a crack that a front has cut by its steps; crack normals are across its
+/// last step, from `before` to `after`, which have the same points. Empty where it has not moved,
+/// or no point is in the material.
 std::optional<GrowingFront> growing_after(const FrontState& before, FrontState after);
 
 /// Where a front is now; at the origin where none of its points is in the material.

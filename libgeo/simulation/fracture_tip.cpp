@@ -179,8 +179,8 @@ TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials
     v[j] = rotation.transpose() * (x + v[j]) - x;
   }
   const double cracked = crack_behind(body.surface, tip, near.support);
-  // Along a resolved crack its singular field alone decides: the stress along it would turn it by an
-  // angle that depends on the spacing of nodes.
+  // Along a resolved crack its singular field alone decides: the stress along it would turn it by
+  // an angle that depends on the spacing of nodes.
   if (cracked == 1 && intensities) {
     if (const std::optional<Vec3> known = intensities(rotation)) {
       field.k = *known;

@@ -45,6 +45,9 @@ struct TipField {
   Strongest strongest() const;
 };
 
+/// Finds K_I, K_II, K_III from the rotation of the material at the tip; empty where it cannot.
+using Intensities = std::function<std::optional<Vec3>(const Mat3& rotation)>;
+
 /// Fits the displacements of a uniform gradient and of unit stress intensities to those of the
 /// nodes within two support radii that a point just ahead of the tip sees, by weighted least
 /// squares (moving least squares enriched with the modes: Fleming, Chu, Moran and Belytschko 1997).
@@ -52,10 +55,9 @@ struct TipField {
 /// the share of crack straight behind the tip, the uniform stress loses its traction on them
 /// (Williams' second term remains). `u`: displacement per node. `intensities`, where given, finds
 /// the stress intensities from the rotation of the material at the tip, where there is crack from
-/// one support radius to three straight behind it; there is no uniform part then. Where it is empty,
-/// all is fitted. A fit takes the gradient of stress in bending for a part of the modes: it
+/// one support radius to three straight behind it; there is no uniform part then. Where it is
+/// empty, all is fitted. A fit takes the gradient of stress in bending for a part of the modes: it
 /// is up to a third too high where twenty spacings or less lie across a body.
-using Intensities = std::function<std::optional<Vec3>(const Mat3& rotation)>;
 TipField tip_field(const Body& body, const std::vector<Vec3>& u, const Materials& materials, const TipFrame& tip,
                    const Intensities& intensities = {});
 

@@ -1,6 +1,6 @@
-// I = ∫ (σ : ∇uᵃ e₁ + σᵃ : ∇u e₁ − σᵃ : ε e₁) · ∇q dV with the fields uᵃ of a unit stress intensity,
-// e₁ ahead. The weight q is 1 at the tip, falls to 0 at the rim, and along the front as 1 − z² / w².
-// Per length of front, I is 2 K (1 − ν²) / E for modes I and II, K / μ for mode III.
+// I = ∫ (σ : ∇uᵃ e₁ + σᵃ : ∇u e₁ − σᵃ : ε e₁) · ∇q dV with the fields uᵃ of a unit stress
+// intensity, e₁ ahead. The weight q is 1 at the tip, falls to 0 at the rim, and along the front as
+// 1 − z² / w². Per length of front, I is 2 K (1 − ν²) / E for modes I and II, K / μ for mode III.
 #include "simulation/interaction_integral.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct InteractionIntegral::Domain {
   double along(double z) const { return std::max(0.0, 1 - z * z / (width * width)); }
   double across(double r) const { return r < core ? 1 : (radius - r) / (radius - core); }
   double weight(const Vec3& x) const { return across(std::hypot(x.x(), x.y())) * along(x.z()); }
-  // Of the weight at a point that the domain holds.
+  // Gradient of the weight at a point that the domain holds.
   Vec3 gradient(const Vec3& x) const {
     const double r = std::hypot(x.x(), x.y());
     const Vec3 ends(0, 0, -2 * across(r) * x.z() / (width * width));
@@ -79,8 +79,8 @@ double crack_length(const Complex& complex, const Domain& domain) {
   return domain.radius;
 }
 
-// How far the crack lies in the plane of the tip, up to the domain's radius: a tenth of its distance
-// beside it, an angle of six degrees, the most that a front turns without a new direction.
+// How far the crack lies in the plane of the tip, up to the domain's radius: a tenth of its
+// distance beside it, an angle of six degrees, the most that a front turns without a new direction.
 double straight_length(const Complex& complex, const Domain& domain, std::int32_t crack) {
   std::vector<FaceId> near;
   complex.faces_near(Box3{domain.tip.at, domain.tip.at}.grown(domain.radius), near);
@@ -170,8 +170,8 @@ void InteractionIntegral::add_points(const Domain& domain, const Mat3& rotation,
   }
 }
 
-// ∫ ρ ü · ∇uᵃ e₁ q dV, by the masses of the nodes. A node nearer to the tip than a tenth of a spacing
-// stands for material that is farther away.
+// ∫ ρ ü · ∇uᵃ e₁ q dV, by the masses of the nodes. A node nearer to the tip than a tenth of a
+// spacing stands for material that is farther away.
 void InteractionIntegral::add_inertia(const Domain& domain, const Mat3& rotation, double spacing, Sum& sum) const {
   if (motion_.acceleration.size() != body_.nodes.size()) return;
   std::vector<std::uint32_t> near;

@@ -1,5 +1,5 @@
-// Stress intensities at a crack front by the interaction integral (Yau, Wang and Corten 1980; over a
-// domain: Shih and Asaro 1988).
+// Stress intensities at a crack front by the interaction integral (Yau, Wang and Corten 1980; over
+// a domain: Shih and Asaro 1988).
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,7 @@ namespace geo {
 /// Integrals over the material points of a body at one time. Refers to its arguments.
 class InteractionIntegral {
  public:
+  /// For a body and its motion.
   InteractionIntegral(const Body& body, const Solid& solid, const State& motion)
       : body_(body), solid_(solid), motion_(motion) {}
 
@@ -21,18 +22,18 @@ class InteractionIntegral {
   struct Domain;
 
   /// K_I, K_II, K_III at point i of a front, Pa √m, in its tip_frame(). For plane strain, without
-  /// plastic strain; with the inertia of the last time step. `rotation`: of the material at the tip, which is taken
-  /// off.
+  /// plastic strain; with the inertia of the last time step. `rotation`: of the material at the
+  /// tip, which is taken off.
   ///
   /// The domain is a cylinder about the front: three node spacings about the tip, and one and a
   /// half to both sides along the front. Nothing within a spacing of the tip counts, where nodes do
   /// not resolve the field. It shrinks where other surfaces are nearer, or the crack is shorter.
-  /// Empty where less than one and a half spacings are left, where the crack is not straight for that length, or where
-  /// there are too few points.
+  /// Empty where less than one and a half spacings are left, where the crack is not straight for
+  /// that length, or where there are too few points.
   std::optional<Vec3> at(const GrowingFront& front, std::size_t i, const Mat3& rotation) const;
 
  private:
-  // What the domain adds up to; `factor` makes stress intensities of it.
+  // The sums over the domain; `factor` makes stress intensities of it.
   struct Sum {
     Vec3 integral = Vec3::Zero(), factor = Vec3::Zero();
     std::size_t points = 0;

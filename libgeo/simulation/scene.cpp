@@ -1,5 +1,5 @@
-// Poses of blades and obstacles of kerf/scene.h, and its lists. World = motion · place: a keyframed motion is
-// applied after the pose at rest.
+// Poses of blades and obstacles of kerf/scene.h, and its lists. World = motion · place: a keyframed
+// motion is applied after the pose at rest.
 #include "kerf/scene.h"
 
 #include <algorithm>

@@ -14,9 +14,9 @@
 
 namespace geo {
 
-/// Dead loads E = −a p · d of tractions p on the area a of a vertex, and springs of supports,
-/// E = ½ k a |x + d − y|² along their axes, as stiff as a layer of material a hundredth of a node
-/// spacing thick. So a support gives way by a hundredth of what the material between two nodes does.
+/// Dead loads E = −a p · d of tractions p on the area a of a vertex, and springs of supports, E = ½
+/// k a |x + d − y|² along their axes, as stiff as a layer of material a hundredth of a node spacing
+/// thick. So a support yields by a hundredth of what the material between two nodes does.
 class SkinLoads : public Potential {
  public:
   /// Throws InputError where a box of the scene holds no triangle of the skin: a load would do

@@ -191,7 +191,7 @@ StepReport TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
   hold_material(step.end);
   Solid& solid = run_.solid.whole();
   const Environment& environment = loads_.environment();
-  // What touches at the begin of a part of a step is found anew, unlike for its substeps.
+  // Contacts are found anew for a part of a step, unlike for its substeps.
   const bool may_be_divided = may_break() && run_.state.glued.halvings < max_halvings;
   const StepReport report = scene.implicit ? solid.step_implicit(motion, step.dt, environment, scene.accuracy,
                                                                  may_be_divided ? Division::refused : Division::allowed)

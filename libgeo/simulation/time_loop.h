@@ -38,7 +38,7 @@ class TimeLoop {
   void apply_changes(double time);
   template <class Time>
   void advance(int step, double dt, const Time& time, FrameStats& stats);
-  // What became of a time step. One that was not taken has changed nothing.
+  // The fate of a time step. One that was not taken has changed nothing.
   enum class Outcome { taken, too_long, not_found };
   Outcome step(const TimeStep& step, FrameStats& stats);
   std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);

@@ -201,6 +201,8 @@ void add_fields(Class& scene) {
   field(scene, "k", &geo::Scene::k, "Neighbours of a node.");
   field(scene, "material", &geo::Scene::material, "Material of bodies without one of their own.");
   field(scene, "grips", &geo::Scene::grips, "Boxes whose nodes are held, list of Grip.");
+  field(scene, "loads", &geo::Scene::loads, "Forces over area on the skin, list of Load.");
+  field(scene, "supports", &geo::Scene::supports, "Where the skin is held along axes, list of Support.");
   field(scene, "blades", &geo::Scene::blades, "Blades, list of Blade.");
   field(scene, "obstacles", &geo::Scene::obstacles, "Rigid obstacles, list of SceneObstacle.");
   field(scene, "ground", &geo::Scene::ground, "Whether there is a ground plane.");

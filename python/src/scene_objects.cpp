@@ -39,6 +39,35 @@ void bind_body_and_grip(py::module_& module) {
       .def_readonly("release", &Grip::release, "Whether nodes become free after the last key.");
 }
 
+void bind_loads(py::module_& module) {
+  using geo::Load;
+  py::class_<Load>(module, "Load", "A force over area on the skin in a box.")
+      .def_property_readonly(
+          "lo", [](const Load& l) { return point(l.lo); }, "Lowest corner, (3,), material coordinates.")
+      .def_property_readonly(
+          "hi", [](const Load& l) { return point(l.hi); }, "Highest corner, (3,), material coordinates.")
+      .def_property_readonly(
+          "traction", [](const Load& l) { return point(l.traction); }, "Force over undeformed area, (3,), Pa.")
+      .def_readonly("start", &Load::from, "When it begins, s.")
+      .def_readonly("ramp", &Load::ramp, "Seconds from then on in which it grows.")
+      .def_readonly("until", &Load::until, "When it ends, s.");
+  using geo::Support;
+  py::class_<Support>(module, "Support", "The skin in a box, held along some axes of the world.")
+      .def_property_readonly(
+          "lo", [](const Support& s) { return point(s.lo); }, "Lowest corner, (3,), material coordinates.")
+      .def_property_readonly(
+          "hi", [](const Support& s) { return point(s.hi); }, "Highest corner, (3,), material coordinates.")
+      .def_property_readonly(
+          "axes",
+          [](const Support& s) {
+            return std::string(s.axes.x ? "x" : "") + (s.axes.y ? "y" : "") + (s.axes.z ? "z" : "");
+          },
+          "The axes along which the skin is held, as 'xz'.")
+      .def_property_readonly(
+          "keys", [](const Support& s) { return keys_to(s.motion); },
+          "Keyframes, (k, 8): time, x, y, z, axis, degrees; of its way.");
+}
+
 void bind_blade_and_obstacle(py::module_& module) {
   using geo::Blade;
   py::class_<Blade>(module, "Blade", "A rigid cutting edge, with an optional wedge behind it.")
@@ -105,6 +134,7 @@ void bind_options(py::module_& module) {
 
 void bind_scene_objects(py::module_& module) {
   bind_body_and_grip(module);
+  bind_loads(module);
   bind_blade_and_obstacle(module);
   bind_options(module);
 }

@@ -229,12 +229,19 @@ void bind_more_stats(py::module_& module) {
       .def_readonly("turning", &H::turning, "Largest angle between neighbouring faces, degrees.")
       .def_readonly("retreating", &H::retreating, "Front points held, because their edge goes back in its own cut.")
       .def_readonly("crumbs", &H::crumbs, "Pieces with less than a tenth of a node's volume, at the frame's end.");
+  using T = geo::CrackTip;
+  py::class_<T>(module, "CrackTip", "Where a growing front is.")
+      .def_readonly("crack", &T::crack, "Number of the crack behind it.")
+      .def_property_readonly(
+          "at", [](const T& t) { return point(t.at); }, "Mean of its points, (3,), material coordinates.")
+      .def_readonly("length", &T::length, "Largest growth of a point since it began or branched, model units.");
   using F = geo::FractureStats;
   py::class_<F>(module, "FractureStats", "Counts of fracture by stress.")
       .def_readonly("begun", &F::begun, "Cracks started.")
       .def_readonly("divided", &F::divided, "Branches.")
       .def_readonly("advanced", &F::advanced, "Steps of fronts.")
-      .def_readonly("refused", &F::refused, "Steps that could not be made.");
+      .def_readonly("refused", &F::refused, "Steps that could not be made.")
+      .def_readonly("tips", &F::tips, "Fronts at the frame's end, list of CrackTip.");
 }
 
 }  // namespace
@@ -268,6 +275,9 @@ void bind_frame_stats(py::module_& module) {
       .def_readonly("contact_seconds", &S::contact_seconds, "Contact.")
       .def_property_readonly("split_seconds", &S::split_seconds, "All phases of cutting.")
       .def_readonly("energy", &S::energy, "Elastic energy at the frame's end, J.")
+      .def_readonly("work", &S::work, "Work of loads, supports and pulls on the bodies, J.")
+      .def_property_readonly("support_force", forces(&S::support_force),
+                             "Mean force of the material on each support along its axes, (s, 3), N.")
       .def_property_readonly("blade_force", forces(&S::blade_force),
                              "Mean force of the material on the wedge of each blade, (b, 3), N; zero without back and\n"
                              "thickness.")

@@ -1,4 +1,5 @@
-// Stress intensities by the interaction integral, beside handbook solutions, and where there is none.
+// Stress intensities by the interaction integral, beside handbook solutions, and where there is
+// none.
 #include "simulation/interaction_integral.h"
 
 #include <catch2/catch.hpp>

@@ -134,8 +134,8 @@ struct Pull {
   double stiffness = 100;  ///< force over stretch, N/m
 };
 
-/// A force over area on the skin in a box, as a pressure or a testing machine exerts it. Faces of cracks have
-/// none.
+/// A force over area on the skin in a box, as a pressure or a testing machine exerts it. Faces of
+/// cracks have none.
 struct Load {
   Vec3 lo, hi;                                             ///< corners of the box, material coordinates
   Vec3 traction = Vec3::Zero();                            ///< Pa: over undeformed area; keeps its direction

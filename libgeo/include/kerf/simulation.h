@@ -105,8 +105,8 @@ struct FrameStats {
   std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
   std::vector<Vec3> obstacle_force;   ///< per obstacle, then the ground: exerted by the bodies, N, mean
   std::vector<Vec3> obstacle_torque;  ///< likewise: about the obstacle's origin, N m
-  /// Adds counts, seconds, work; takes energy, forces, tips and crumbs of `o`, the larger deviation and
-  /// turning.
+  /// Adds counts, seconds, work; takes energy, forces, tips and crumbs of `o`, the larger deviation
+  /// and turning.
   FrameStats& operator+=(const FrameStats& o);
   /// Seconds of all phases of cutting.
   double split_seconds() const;

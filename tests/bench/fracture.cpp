@@ -40,6 +40,28 @@ geo::Scene thrown(const geo::TriangleMesh& model, std::size_t nodes, int cells) 
   return scene;
 }
 
+// A pane in a frame that holds its rim, struck by a ball that goes through it.
+geo::Scene struck_pane(int cells) {
+  geo::Scene scene;
+  scene.bodies.resize(1);
+  scene.bodies[0].sampling.count = 20000;
+  scene.material = {.young = 2e7, .density = 2000, .damping = 1};
+  for (const double x : {0.0, 2.0}) scene.grips.push_back({.lo = {x - 0.08, -1, -1}, .hi = {x + 0.08, 2, 1}});
+  geo::SceneObstacle ball;
+  ball.mesh = geo::make_sphere(8);
+  ball.scale = 0.16;
+  ball.place.position = {0.9, 0.45, 0.3};
+  ball.motion.keys = {{.time = 0, .position = geo::Vec3::Zero()}, {.time = 0.2, .position = {0, 0, -1.2}}};
+  scene.obstacles.push_back(ball);
+  scene.frame_rate = 120;
+  scene.dt = 1.0 / 240;
+  scene.frames = 12;
+  scene.fracture.on = true;
+  scene.fracture.cells = cells;
+  scene.fracture.strength = 2e5;
+  return scene;
+}
+
 Row run(const geo::TriangleMesh& model, const geo::Scene& scene) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point start) {
@@ -78,11 +100,21 @@ int fracture(const Options& options) {
       std::printf("| %d cells | %u | %.1f | %.2f | %.1f | %.1f | %.1f |\n", cells, row.pieces, row.seconds, row.worst,
                   row.stats.fracture_seconds, row.stats.mechanics_seconds, row.stats.contact_seconds);
   }
+  const geo::Scene pane = struck_pane(300);
+  const Row through = run(geo::make_block({2, 1, 0.12}, 0.06), pane);
+  figures["pane_seconds_per_frame"] = through.seconds / pane.frames;
+  figures["pane_worst_frame"] = through.worst;
+  figures["pane_pieces"] = through.pieces;
   figures["overhead"] = some.seconds / whole.seconds;
   if (options.json)
     print(figures, true);
   else
-    std::printf("\n%.1f times the run without fracture.\n", figures["overhead"]);
+    std::printf(
+        "\n%.1f times the run without fracture. A pane of 20000 nodes and 300 cells, struck by a ball: %u pieces, %.2f "
+        "s "
+        "a frame, worst %.2f s; fracture %.1f s, mechanics %.1f s, contact %.1f s.\n",
+        figures["overhead"], through.pieces, figures["pane_seconds_per_frame"], through.worst,
+        through.stats.fracture_seconds, through.stats.mechanics_seconds, through.stats.contact_seconds);
   return 0;
 }
 

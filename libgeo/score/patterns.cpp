@@ -169,6 +169,30 @@ Pattern pattern_named(std::string_view name) {
   throw InputError("there is no pattern of this name; give one of " + all);
 }
 
+Density relative_density(const TriangleBvh& skin, const Density& density) {
+  if (!density) return {};
+  const auto checked = [density](const Vec3& p) {
+    const double value = density(p);
+    if (!(value >= 0 && value <= std::numeric_limits<double>::max()))
+      throw InputError("the density is below 0 or not finite at a point; give numbers of at least 0");
+    return value;
+  };
+  constexpr int probes = 4096;
+  Random random(0);
+  double largest = 0;
+  // A hundred tries a point: a model that fills a hundredth of its box has them all.
+  for (int tries = 0, found = 0; found < probes && tries < 100 * probes; ++tries) {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = random.uniform(skin.box().lo[k], skin.box().hi[k]);
+    if (!skin.inside(p)) continue;
+    ++found;
+    largest = std::max(largest, checked(p));
+  }
+  if (!(largest > 0))
+    throw InputError("the density is 0 everywhere inside the model; give it a value above 0 somewhere");
+  return [checked, largest](const Vec3& p) { return std::min(1.0, checked(p) / largest); };
+}
+
 std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& stretch, const PatternOptions& o) {
   Random random(o.seed);
   const Box3& box = skin.box();
@@ -186,7 +210,7 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
       for (int k = 0; k < 3; ++k) p[k] = random.uniform(box.lo[k], box.hi[k]);
       // Density is spacing⁻³; candidates are accepted in proportion to it, with 1 at the impact.
       const bool accepted = !o.impact || random.uniform() * std::pow(spacing(p), 3) < closest * closest * closest;
-      if (accepted && skin.inside(p)) return true;
+      if (accepted && skin.inside(p) && (!o.density || random.uniform() < o.density(p))) return true;
     }
     return false;
   };
@@ -195,11 +219,13 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
     double farthest = -1;
     for (int tries = 0; tries < 10; ++tries) {
       if (!candidate(p))
-        throw InputError("no place for Voronoi sites is found inside; is the model thinner than rounding?");
+        throw InputError(o.density ? "no place for Voronoi sites is found; is the density high in a tiny part alone?"
+                                   : "no place for Voronoi sites is found inside; is the model thinner than rounding?");
       const Vec3 q = stretch * p;
       double nearest = std::numeric_limits<double>::infinity();
       for (const Vec3& s : sites) nearest = std::min(nearest, (q - s).norm());
       nearest /= spacing(p);
+      if (o.density) nearest *= std::cbrt(o.density(p));
       if (nearest > farthest) {
         farthest = nearest;
         best = q;

@@ -130,16 +130,17 @@ std::vector<std::vector<geo::Vec3>> image_curves(const Command& w, const geo::Sc
   if (!w.up.empty()) o.up = direction("--up", w.up);
   o.fit = w.fit == "inside" ? geo::ImageFit::inside : geo::ImageFit::stretched;
   o.tolerance = w.tolerance;
+  const geo::GrayImage image = tool::read_png(w.image);
+  geo::CutOut cut;
   try {
-    geo::CutOut cut = geo::cut_out(tool::read_png(w.image), box, o);
-    if (cut.spots > 0)
-      t.say("kerf-score: " + w.image + ": left out: " + tool::counted(cut.spots, "spot") + " smaller than " +
-            tool::number(o.least_area) + " pixels");
-    return std::move(cut.curves);
+    cut = geo::cut_out(image, box, o);
   } catch (const geo::InputError& e) {
-    const std::string what = e.what();
-    throw geo::InputError(what.starts_with(w.image) ? what : w.image + ": " + what);
+    throw geo::InputError(w.image + ": " + e.what());
   }
+  if (cut.spots > 0)
+    t.say("kerf-score: " + w.image + ": left out: " + tool::counted(cut.spots, "spot") + " smaller than " +
+          tool::number(o.least_area) + " pixels");
+  return std::move(cut.curves);
 }
 
 // Says where the score has fewer pieces or chips than are wanted.

@@ -130,7 +130,8 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
   walls = std::move(kept);
 }
 
-// A finer limit on the length of edges whose middle is within `width` of the skin.
+// A finer limit on the length of edges whose middle is within `width` of the skin: `longest` there,
+// and three times as much at that depth.
 struct FineRegion {
   const TriangleBvh& skin;
   double width, longest;
@@ -189,7 +190,9 @@ class Bisection {
   // Whether an edge is in the fine region, and too long for it.
   bool is_coarse(std::uint32_t a, std::uint32_t b, double length2) const {
     if (!fine_ || !(length2 > fine_->longest * fine_->longest)) return false;
-    return fine_->skin.closest(0.5 * (walls_.vertices[a] + walls_.vertices[b]), fine_->width).triangle != ~0u;
+    const auto nearest = fine_->skin.closest(0.5 * (walls_.vertices[a] + walls_.vertices[b]), fine_->width);
+    const double limit = fine_->longest * (1 + 2 * nearest.distance / fine_->width);
+    return nearest.triangle != ~0u && length2 > limit * limit;
   }
   // An edge of the triangles at this one that is longer, by its place in the queue; ~0u: none.
   std::uint32_t longer_beside(std::uint32_t edge) const {
@@ -391,7 +394,7 @@ void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOpt
   const double longest = flat_inside ? 1 : o.edge > 0 ? o.edge : 1 / (8 * o.frequency);
   refine_walls(walls, skin, size * longest, margin, pause);
   if (o.edge_amplitude > 0) {
-    // A bump is as wide as half the region of detail, and four triangles.
+    // A bump is as wide as half the region of detail, and four triangles at the skin.
     const FineRegion fine{.skin = skin, .width = o.edge_width * size, .longest = o.edge_width * size / 8};
     Bisection(walls, size * longest, &fine).run();
     if (pause) pause();

@@ -147,11 +147,14 @@ TriangleMesh swept_curves(const Box3& box, const PatternOptions& o) {
   for (const auto& curve : o.curves) {
     std::vector<Vec2> points;
     std::vector<std::array<std::uint32_t, 2>> segments;
-    for (const Vec3& p : curve) {
-      const Vec3 q = frame.transpose() * p;
-      if (!points.empty())
-        segments.push_back({static_cast<std::uint32_t>(points.size() - 1), static_cast<std::uint32_t>(points.size())});
+    // A curve that returns to its first point has one point there: its wall is closed, also where
+    // points are displaced.
+    const bool closed = curve.size() > 3 && curve.front() == curve.back();
+    const auto count = static_cast<std::uint32_t>(curve.size() - (closed ? 1 : 0));
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Vec3 q = frame.transpose() * curve[i];
       points.push_back({q.x(), q.y()});
+      if (i + 1 < count || closed) segments.push_back({i, (i + 1) % count});
     }
     sheets.push_back(raised_walls(points, segments, along.lo.z(), along.hi.z(), frame));
   }

@@ -90,7 +90,7 @@ TEST_CASE("Pieces follow the density, for any number of threads", "[score][densi
   const Pieces pieces = find_pieces(cut);
   int dense = 0;
   for (std::uint32_t p = 0; p < pieces.count; ++p) dense += bounding_box(piece_mesh(cut, pieces, p)).lo.x() < 0.9;
-  // 30 sites are expected there. Cells at the middle reach far into the other half, not the reverse.
+  // 30 sites are expected there. Cells at the middle reach far into the other half.
   CHECK(dense >= 27);
   CHECK(dense < 33);
 }

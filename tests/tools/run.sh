@@ -386,7 +386,7 @@ scores)
   cmp chips.front one.front || fail "threads change chips"
 
   # Density: red is high at x > 1, where most cells are then.
-  kerf-model block --edge 0.25 -o block.off
+  kerf-repair -q block.ply -o block.off
   awk 'NR == 2 { n = $1; print "ply\nformat ascii 1.0\nelement vertex " $1 "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face " $2 "\nproperty list uchar int vertex_indices\nend_header"; next }
     NR > 2 && NR <= n + 2 { print $0, ($1 > 1 ? 255 : 20), 0, 0; next } NR > n + 2' block.off >painted.ply
   quietly kerf-score painted.ply --density red --pieces 24 -o red.front

@@ -247,7 +247,7 @@ def densities_and_chips():
     run("kerf-model block --edge 0.5 -o block.ply")
     said("kerf-score block.ply --density red -o x.front", r"give a file with colours of vertices, or another --density")
     run("kerf-score block.ply --density x --pieces 6 -o x.front")
-    wanted = "kerf-score block.ply --pieces 2 --chips 100 -o x.front"
+    wanted = "kerf-score block.ply --pieces 2 --chips 40 -o x.front"
     match = said(wanted, r"edges have room for more of a smaller (--chip-size)", 0)
     assert not run(f"{wanted} {match[1]} 0.03")[1]
 

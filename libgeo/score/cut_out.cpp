@@ -25,12 +25,22 @@ struct Outline {
   std::vector<std::size_t> kept;  // points that a simplified outline has, ascending
 };
 
+[[noreturn]] void refuse(const CutOutOptions& o) {
+  throw InputError("the image's outlines have more than " + std::to_string(o.max_segments) +
+                   " segments; give a smaller or smoother image");
+}
+
 // The outlines of an image, in order of the lowest edge of the grid that they cross.
 class MarchingSquares {
  public:
-  MarchingSquares(const GrayImage& image, double threshold) : image_(image), threshold_(threshold) {
-    for (int y = 0; y + 1 < image.height; ++y)
+  // Throws InputError where outlines pass between more than a hundred times as many pixels as they
+  // may have segments.
+  MarchingSquares(const GrayImage& image, const CutOutOptions& o)
+      : image_(image), threshold_(o.threshold), max_nodes_(100 * static_cast<std::size_t>(o.max_segments)) {
+    for (int y = 0; y + 1 < image.height; ++y) {
       for (int x = 0; x + 1 < image.width; ++x) march(x, y);
+      if (nodes_.size() > max_nodes_) refuse(o);
+    }
   }
 
   std::vector<Outline> run() {
@@ -113,6 +123,7 @@ class MarchingSquares {
 
   const GrayImage& image_;
   const double threshold_;
+  const std::size_t max_nodes_;
   std::vector<Node> nodes_;
   crack::IndexMap<std::uint64_t, crack::SpreadHash> index_;
 };
@@ -300,7 +311,7 @@ void require(const GrayImage& image, const CutOutOptions& o) {
 CutOut cut_out(const GrayImage& image, const Box3& box, const CutOutOptions& o) {
   require(image, o);
   const Placement placement(image, box, o);
-  std::vector<Outline> outlines = MarchingSquares(image, o.threshold).run();
+  std::vector<Outline> outlines = MarchingSquares(image, o).run();
   CutOut result;
   result.spots = std::erase_if(
       outlines, [&](const Outline& outline) { return outline.closed && area_of(outline) < o.least_area; });
@@ -312,9 +323,7 @@ CutOut cut_out(const GrayImage& image, const Box3& box, const CutOutOptions& o) 
     segments = 0;
     for (const auto& outline : outlines) segments += outline.kept.size() - (outline.closed ? 0 : 1);
   }
-  if (segments > static_cast<std::size_t>(o.max_segments))
-    throw InputError("the image's outlines have more than " + std::to_string(o.max_segments) +
-                     " segments; give a smaller or smoother image");
+  if (segments > static_cast<std::size_t>(o.max_segments)) refuse(o);
   for (const auto& outline : outlines) {
     std::vector<Vec3> curve;
     if (!outline.closed) curve.push_back(placement.beyond(outline.points.front()));

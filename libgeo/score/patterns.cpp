@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -143,22 +146,25 @@ TriangleMesh cells_of_sites(const TriangleBvh& skin, int cells, const PatternOpt
 TriangleMesh swept_curves(const Box3& box, const PatternOptions& o) {
   const Mat3 frame = frame_along(axis_of(box, o));
   const Box3 along = box_along(widened(box), frame);
-  std::vector<TriangleMesh> sheets;
+  // Curves that meet in a point share it, as closed ones do their first: their walls meet there
+  // also where the insertion displaces points.
+  std::vector<Vec2> points;
+  std::vector<std::array<std::uint32_t, 2>> segments;
+  std::map<std::pair<double, double>, std::uint32_t> index;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> known;
   for (const auto& curve : o.curves) {
-    std::vector<Vec2> points;
-    std::vector<std::array<std::uint32_t, 2>> segments;
-    // A curve that returns to its first point has one point there: its wall is closed, also where
-    // points are displaced.
-    const bool closed = curve.size() > 3 && curve.front() == curve.back();
-    const auto count = static_cast<std::uint32_t>(curve.size() - (closed ? 1 : 0));
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Vec3 q = frame.transpose() * curve[i];
-      points.push_back({q.x(), q.y()});
-      if (i + 1 < count || closed) segments.push_back({i, (i + 1) % count});
+    std::uint32_t last = ~0u;
+    for (const Vec3& p : curve) {
+      const Vec3 q = frame.transpose() * p;
+      const auto [entry, fresh] = index.try_emplace({q.x(), q.y()}, static_cast<std::uint32_t>(points.size()));
+      if (fresh) points.push_back({q.x(), q.y()});
+      const std::uint32_t at = entry->second;
+      if (last != ~0u && last != at && known.insert(std::minmax(last, at)).second) segments.push_back({last, at});
+      last = at;
     }
-    sheets.push_back(raised_walls(points, segments, along.lo.z(), along.hi.z(), frame));
   }
-  return divided_by_each_other(sheets, widened(box));
+  const TriangleMesh walls = raised_walls(points, segments, along.lo.z(), along.hi.z(), frame);
+  return divided_by_each_other({walls}, widened(box));
 }
 
 }  // namespace

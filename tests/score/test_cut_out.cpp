@@ -116,6 +116,18 @@ TEST_CASE("Letters, islands and stripes make the right number of pieces", "[scor
   CHECK(pieces_of(block, image_of(40, 30, board), options).count >= 7);
 }
 
+TEST_CASE("Outlines with edges on common lines are closed walls", "[score][image]") {
+  // Edges in one plane make the insertion displace points: a wall then stays closed.
+  const TriangleMesh plate = make_block({2, 1, 0.12}, 0.1);
+  for (const double size : {4.0, 5.3, 6.5}) {
+    const auto squares = [&](double x, double y) {
+      const double u = std::abs(std::fmod(x, 10) - 5), v = std::abs(std::fmod(y, 10) - 5);
+      return std::max(u, v) - size / 2 + 0.5;
+    };
+    CHECK(pieces_of(plate, image_of(120, 60, squares), {}).count == 73);
+  }
+}
+
 TEST_CASE("Outlines of random images do not meet", "[score][image]") {
   const auto [first, count] = seeds(12);
   for (int c = 0; c < count; ++c) {

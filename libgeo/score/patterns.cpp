@@ -163,7 +163,9 @@ TriangleMesh swept_curves(const Box3& box, const PatternOptions& o) {
       last = at;
     }
   }
-  const TriangleMesh walls = raised_walls(points, segments, along.lo.z(), along.hi.z(), frame);
+  // Walls end beyond the box: edges of walls in its faces would have points displaced.
+  const TriangleMesh walls =
+      raised_walls(points, segments, along.lo.z() - 0.1 * box.diagonal(), along.hi.z() + 0.1 * box.diagonal(), frame);
   return divided_by_each_other({walls}, widened(box));
 }
 

@@ -35,6 +35,9 @@ class Options:
     pieces: int = 20
     jagged: float = 0.0
     bumps: float = 8.0
+    edge_detail: float = 0.0
+    chips: int = 0
+    chip_size: float = 0.25  # a fraction of the cube root of the mean piece's volume
     seed: int = 1
     axis: typing.Optional[tuple] = None  # none: the pattern's own default
     impact: typing.Optional[tuple] = None

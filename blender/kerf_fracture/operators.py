@@ -159,6 +159,7 @@ class Patterned(settings.Settings, Work):
             axis = tuple((own.frame.to_3x3().inverted() @ (own.object.matrix_world.to_3x3() @ unit)).normalized())
         return backend.Options(
             pattern=self.pattern, pieces=self.pieces, jagged=self.jagged, bumps=self.bumps, seed=self.seed, axis=axis, impact=impact,
+            edge_detail=self.edge_detail, chips=self.chips, chip_size=self.chip_size,
             cluster=self.cluster, grain=self.grain, tile=self.tile, hulls=self.hulls, corners=self.corners,
         )
 

@@ -29,6 +29,17 @@ class Settings:
     bumps: FloatProperty(
         name="Bumps", default=8, min=1, max=100, description="How many of the largest bumps fit along the diagonal. Finer walls have more triangles"
     )
+    edge_detail: FloatProperty(
+        name="Edge Detail", default=0, min=0, max=0.1, soft_max=0.02, step=0.1, precision=3,
+        description="Height of finer bumps where walls meet the surface, as a fraction of the diagonal; 0: none",
+    )
+    chips: IntProperty(
+        name="Chips", default=0, min=0, max=100000, soft_max=1000,
+        description="How many small pieces break off where walls meet the surface or each other; beside the number of pieces",
+    )
+    chip_size: FloatProperty(
+        name="Chip Size", default=0.25, min=0.01, max=1, description="Length of a chip along its edge, compared with the size of the mean piece"
+    )
     seed: IntProperty(name="Seed", default=1, min=0, description="Another seed gives other walls of the same kind")
     axis: EnumProperty(name="Axis", items=AXES, default="AUTO", description="Across slices, along the grain, up the courses, through radial cracks")
     at_cursor: BoolProperty(
@@ -79,6 +90,10 @@ def draw(layout, settings, column=True):
     block.prop(settings, "jagged")
     if settings.jagged:
         block.prop(settings, "bumps")
+    block.prop(settings, "edge_detail")
+    block.prop(settings, "chips")
+    if settings.chips:
+        block.prop(settings, "chip_size")
     block = layout.column(align=True)
     if settings.pattern in {"planes", "wood", "bricks", "radial", "glass"}:
         block.prop(settings, "axis")

@@ -66,12 +66,15 @@ class Module:
     def _crack(self, model, options, progress, end):
         """The cut complex, and sentences for the user."""
         solid = self.kerf.Solid(*arrays.welded(model.vertices, model.triangles))
-        wanted = {name: getattr(options, name) for name in ("pieces", "jagged", "seed", "cluster", "grain")}
+        names = ("pieces", "jagged", "seed", "cluster", "grain", "edge_detail", "chips", "chip_size")
+        wanted = {name: getattr(options, name) for name in names}
         wanted.update({name: list(getattr(options, name)) for name in ("axis", "impact") if getattr(options, name) is not None})
         score = self.kerf.score(solid, options.pattern, frequency=options.bumps, progress=_span(progress, 0, end / 2), **wanted)
         notes = []
         if score.pieces != options.pieces:
             notes.append(f"{score.pieces} pieces, not {options.pieces}; another seed may find them")
+        if score.chips != options.chips:
+            notes.append(f"{score.chips} chips, not {options.chips}; edges have room for more of a smaller size")
         return solid.crack(score, progress=_span(progress, end / 2, end)), notes
 
 

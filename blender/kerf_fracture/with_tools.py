@@ -61,6 +61,7 @@ class Tools:
         ply.write(os.path.join(folder, "model.ply"), model.vertices, model.triangles)
         arguments = ["--pattern", options.pattern, "--pieces", str(options.pieces), "--seed", str(options.seed)]
         arguments += ["--jagged", repr(options.jagged), "--bumps", repr(options.bumps)]
+        arguments += ["--edge-detail", repr(options.edge_detail), "--chips", str(options.chips), "--chip-size", repr(options.chip_size)]
         arguments += ["--cluster", repr(options.cluster), "--grain", repr(options.grain)]
         for name in ("axis", "impact"):
             if getattr(options, name) is not None:

@@ -1,6 +1,9 @@
 // Walls are refined by longest-edge bisection and displaced by fractal noise in each coordinate,
 // Σ_o 0.6^o · noise_o(2^o · frequency · p). Where triangles cross (exact test, spatial index), the
 // displacement of their vertices is halved, and dropped at the fourth time.
+//
+// Detail near the skin is noise of the same kind times (1 − depth / width)². There, the triangles
+// are refined further along longest-edge propagation paths (Rivara 1997), which keep their angles.
 #include "score/jagged.h"
 
 #include <algorithm>
@@ -127,11 +130,19 @@ void trim(TriangleMesh& walls, const TriangleBvh& skin, double margin) {
   walls = std::move(kept);
 }
 
+// A finer limit on the length of edges whose middle is within `width` of the skin: `longest` there,
+// and three times as much at that depth.
+struct FineRegion {
+  const TriangleBvh& skin;
+  double width, longest;
+};
+
 // Bisects edges, the longest first: each is then the longest of all its triangles, so that small
-// angles stay bounded.
+// angles stay bounded. In a fine region, longer edges of its triangles come before an edge.
 class Bisection {
  public:
-  Bisection(TriangleMesh& walls, double longest) : walls_(walls), longest_(longest) {
+  Bisection(TriangleMesh& walls, double longest, const FineRegion* fine = nullptr)
+      : walls_(walls), longest_(longest), fine_(fine) {
     crack::IndexMap<std::uint64_t, crack::SpreadHash> index;
     for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
       const Triangle& v = walls.triangles[t];
@@ -150,14 +161,19 @@ class Bisection {
     while (!queue_.empty()) {
       const std::uint32_t edge = queue_.top().edge;
       queue_.pop();
-      bisect(edge);
+      if (fine_)
+        for (std::uint32_t longer = longer_beside(edge); longer != ~0u; longer = longer_beside(edge)) {
+          for (std::uint32_t next = longer; next != ~0u; next = longer_beside(next)) longer = next;
+          bisect(longer);
+        }
+      if (edges_[edge].first != ~0u) bisect(edge);
     }
   }
 
  private:
   struct Edge {
     std::uint32_t a, b;                     // vertices, a < b
-    std::uint32_t first = ~0u, last = ~0u;  // its uses, in the order in which they were added
+    std::uint32_t first = ~0u, last = ~0u;  // its uses, in the order in which they were added; none: bisected
   };
   struct Use {
     std::uint32_t triangle, next;
@@ -168,11 +184,33 @@ class Bisection {
     bool operator<(const Entry& o) const { return std::tie(length2, o.a, o.b) < std::tie(o.length2, a, b); }
   };
 
+  double length2_of(std::uint32_t a, std::uint32_t b) const {
+    return (walls_.vertices[a] - walls_.vertices[b]).squaredNorm();
+  }
+  // Whether an edge is in the fine region, and too long for it.
+  bool is_coarse(std::uint32_t a, std::uint32_t b, double length2) const {
+    if (!fine_ || !(length2 > fine_->longest * fine_->longest)) return false;
+    const auto nearest = fine_->skin.closest(0.5 * (walls_.vertices[a] + walls_.vertices[b]), fine_->width);
+    const double limit = fine_->longest * (1 + 2 * nearest.distance / fine_->width);
+    return nearest.triangle != ~0u && length2 > limit * limit;
+  }
+  // An edge of the triangles at this one that is longer, by its place in the queue; ~0u: none.
+  std::uint32_t longer_beside(std::uint32_t edge) const {
+    const auto entry = [&](std::uint32_t e) {
+      return Entry{.length2 = length2_of(edges_[e].a, edges_[e].b), .a = edges_[e].a, .b = edges_[e].b, .edge = e};
+    };
+    const Entry own = entry(edge);
+    for (auto use = edges_[edge].first; use != ~0u; use = uses_[use].next)
+      for (const auto other : edges_of_[uses_[use].triangle])
+        if (own < entry(other)) return other;
+    return ~0u;
+  }
+
   std::uint32_t add_edge(std::uint32_t a, std::uint32_t b) {
     const auto edge = static_cast<std::uint32_t>(edges_.size());
     edges_.push_back({.a = std::min(a, b), .b = std::max(a, b)});
-    const double length2 = (walls_.vertices[a] - walls_.vertices[b]).squaredNorm();
-    if (length2 > longest_ * longest_)
+    const double length2 = length2_of(a, b);
+    if (length2 > longest_ * longest_ || is_coarse(a, b, length2))
       queue_.push({.length2 = length2, .a = std::min(a, b), .b = std::max(a, b), .edge = edge});
     return edge;
   }
@@ -218,10 +256,12 @@ class Bisection {
       add_use(across, other);
       add_use(to_b, other);
     }
+    edges_[edge].first = ~0u;
   }
 
   TriangleMesh& walls_;
   const double longest_;
+  const FineRegion* const fine_;
   std::vector<Edge> edges_;
   std::vector<Use> uses_;
   std::vector<std::array<std::uint32_t, 3>> edges_of_;           // per triangle: from corner k to the next
@@ -295,24 +335,77 @@ void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, 
   }
 }
 
-void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOptions& o,
-                   const std::function<void()>& pause) {
+namespace {
+
+// Fractal noise at a point, in model units: `octaves` of them, the first with `frequency` bumps a
+// model unit and of height `height`.
+Vec3 fractal_noise(const Vec3& p, double height, double frequency, int octaves, std::uint64_t first_seed) {
+  Vec3 sum = Vec3::Zero();
+  for (int octave = 0; octave < octaves; ++octave, height *= 0.6, frequency *= 2) {
+    const std::uint64_t seed = first_seed + static_cast<std::uint64_t>(octave * 3);
+    const auto noise = gradient_noises(frequency * p, {seed, seed + 1, seed + 2});
+    for (int k = 0; k < 3; ++k) sum[k] += height * noise[std::size_t(k)];
+  }
+  return sum;
+}
+
+// How far a point of flat walls moves.
+class Displacement {
+ public:
+  Displacement(const TriangleBvh& skin, const JaggedOptions& o) : skin_(skin), o_(o), size_(skin.box().diagonal()) {}
+
+  Vec3 at(const Vec3& p) const {
+    const Vec3 from = p - skin_.box().lo;
+    const std::uint64_t seed = o_.seed * 0x9e3779b97f4a7c15ull;
+    Vec3 offset = fractal_noise(from, o_.amplitude * size_, o_.frequency / size_, o_.octaves, seed);
+    if (!(o_.edge_amplitude > 0)) return offset;
+    const double width = o_.edge_width * size_;
+    const auto nearest = skin_.closest(p, width);
+    if (nearest.triangle == ~0u) return offset;
+    const double fade = std::max(0.0, 1 - nearest.distance / width);
+    // Seeds of their own: above those of the 16 octaves that there are at most.
+    return offset + fade * fade * fractal_noise(from, o_.edge_amplitude * size_, 2 / width, edge_octaves, seed + 48);
+  }
+
+ private:
+  static constexpr int edge_octaves = 2;  // the triangles, a quarter of a bump, show no more
+  const TriangleBvh& skin_;
+  const JaggedOptions& o_;
+  const double size_;
+};
+
+void require_in_range(const JaggedOptions& o) {
   if (!(o.amplitude >= 0 && o.amplitude < 1) || !(o.frequency > 0 && o.frequency <= 1e4) || o.octaves < 1 ||
       o.octaves > 16 || !(o.edge >= 0))
     throw InputError(
         "the jaggedness's amplitude must be in [0, 1), its frequency positive and at most 10000, its octaves 1 to 16");
-  const double size = skin.box().diagonal();
-  refine_walls(walls, skin, size * (o.edge > 0 ? o.edge : 1 / (8 * o.frequency)), 4 * o.amplitude * size, pause);
+  if (!(o.edge_amplitude >= 0 && o.edge_amplitude < 1) || !(o.edge_width >= 1e-3 && o.edge_width <= 1))
+    throw InputError("the height of detail at edges must be in [0, 1), its width from 0.001 to 1");
+}
+
+}  // namespace
+
+void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOptions& o,
+                   const std::function<void()>& pause) {
+  require_in_range(o);
+  const double size = skin.box().diagonal(), margin = 4 * (o.amplitude + o.edge_amplitude) * size;
+  // Where detail is all, walls are refined near the skin alone.
+  const bool flat_inside = o.edge_amplitude > 0 && !(o.amplitude > 0) && !(o.edge > 0);
+  const double longest = flat_inside ? 1 : o.edge > 0 ? o.edge : 1 / (8 * o.frequency);
+  refine_walls(walls, skin, size * longest, margin, pause);
+  if (o.edge_amplitude > 0) {
+    // A bump is as wide as half the region of detail, and four triangles at the skin.
+    const FineRegion fine{.skin = skin, .width = o.edge_width * size, .longest = o.edge_width * size / 8};
+    Bisection(walls, size * longest, &fine).run();
+    if (pause) pause();
+    trim(walls, skin, margin);
+  }
   const std::vector<Vec3> flat = walls.vertices;
   std::vector<Vec3> offset(flat.size(), Vec3::Zero());
+  const Displacement displacement(skin, o);
   parallel_for(flat.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      double height = o.amplitude * size, frequency = o.frequency / size;
-      for (int octave = 0; octave < o.octaves; ++octave, height *= 0.6, frequency *= 2) {
-        const std::uint64_t seed = o.seed * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(octave * 3);
-        const auto noise = gradient_noises(frequency * (flat[i] - skin.box().lo), {seed, seed + 1, seed + 2});
-        for (int k = 0; k < 3; ++k) offset[i][k] += height * noise[std::size_t(k)];
-      }
+      offset[i] = displacement.at(flat[i]);
       walls.vertices[i] = flat[i] + offset[i];
     }
   });

@@ -16,7 +16,8 @@ namespace geo {
 void refine_walls(TriangleMesh& walls, const TriangleBvh& skin, double longest, double margin,
                   const std::function<void()>& pause = {});
 
-/// Refines walls and displaces their vertices by fractal noise. Vertices move less, or not at all,
+/// Refines walls and displaces their vertices by fractal noise, finer near the skin where there is
+/// detail at edges. Vertices move less, or not at all,
 /// where walls would cross: walls that meet in shared vertices and edges alone still do. Throws
 /// InputError for options out of range. `pause` as in refine_walls().
 void roughen_walls(TriangleMesh& walls, const TriangleBvh& skin, const JaggedOptions& options,

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -143,19 +146,27 @@ TriangleMesh cells_of_sites(const TriangleBvh& skin, int cells, const PatternOpt
 TriangleMesh swept_curves(const Box3& box, const PatternOptions& o) {
   const Mat3 frame = frame_along(axis_of(box, o));
   const Box3 along = box_along(widened(box), frame);
-  std::vector<TriangleMesh> sheets;
+  // Curves that meet in a point share it, as closed ones do their first: their walls meet there
+  // also where the insertion displaces points.
+  std::vector<Vec2> points;
+  std::vector<std::array<std::uint32_t, 2>> segments;
+  std::map<std::pair<double, double>, std::uint32_t> index;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> known;
   for (const auto& curve : o.curves) {
-    std::vector<Vec2> points;
-    std::vector<std::array<std::uint32_t, 2>> segments;
+    std::uint32_t last = ~0u;
     for (const Vec3& p : curve) {
       const Vec3 q = frame.transpose() * p;
-      if (!points.empty())
-        segments.push_back({static_cast<std::uint32_t>(points.size() - 1), static_cast<std::uint32_t>(points.size())});
-      points.push_back({q.x(), q.y()});
+      const auto [entry, fresh] = index.try_emplace({q.x(), q.y()}, static_cast<std::uint32_t>(points.size()));
+      if (fresh) points.push_back({q.x(), q.y()});
+      const std::uint32_t at = entry->second;
+      if (last != ~0u && last != at && known.insert(std::minmax(last, at)).second) segments.push_back({last, at});
+      last = at;
     }
-    sheets.push_back(raised_walls(points, segments, along.lo.z(), along.hi.z(), frame));
   }
-  return divided_by_each_other(sheets, widened(box));
+  // Walls end beyond the box: edges of walls in its faces would have points displaced.
+  const TriangleMesh walls =
+      raised_walls(points, segments, along.lo.z() - 0.1 * box.diagonal(), along.hi.z() + 0.1 * box.diagonal(), frame);
+  return divided_by_each_other({walls}, widened(box));
 }
 
 }  // namespace
@@ -167,6 +178,30 @@ Pattern pattern_named(std::string_view name) {
     all += std::string(i ? ", " : "") + pattern_names[i];
   }
   throw InputError("there is no pattern of this name; give one of " + all);
+}
+
+Density relative_density(const TriangleBvh& skin, const Density& density) {
+  if (!density) return {};
+  const auto checked = [density](const Vec3& p) {
+    const double value = density(p);
+    if (!(value >= 0 && value <= std::numeric_limits<double>::max()))
+      throw InputError("the density is below 0 or not finite at a point; give numbers of at least 0");
+    return value;
+  };
+  constexpr int probes = 4096;
+  Random random(0);
+  double largest = 0;
+  // A hundred tries a point: a model that fills a hundredth of its box has them all.
+  for (int tries = 0, found = 0; found < probes && tries < 100 * probes; ++tries) {
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = random.uniform(skin.box().lo[k], skin.box().hi[k]);
+    if (!skin.inside(p)) continue;
+    ++found;
+    largest = std::max(largest, checked(p));
+  }
+  if (!(largest > 0))
+    throw InputError("the density is 0 everywhere inside the model; give it a value above 0 somewhere");
+  return [checked, largest](const Vec3& p) { return std::min(1.0, checked(p) / largest); };
 }
 
 std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& stretch, const PatternOptions& o) {
@@ -186,7 +221,7 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
       for (int k = 0; k < 3; ++k) p[k] = random.uniform(box.lo[k], box.hi[k]);
       // Density is spacing⁻³; candidates are accepted in proportion to it, with 1 at the impact.
       const bool accepted = !o.impact || random.uniform() * std::pow(spacing(p), 3) < closest * closest * closest;
-      if (accepted && skin.inside(p)) return true;
+      if (accepted && skin.inside(p) && (!o.density || random.uniform() < o.density(p))) return true;
     }
     return false;
   };
@@ -195,11 +230,13 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
     double farthest = -1;
     for (int tries = 0; tries < 10; ++tries) {
       if (!candidate(p))
-        throw InputError("no place for Voronoi sites is found inside; is the model thinner than rounding?");
+        throw InputError(o.density ? "no place for Voronoi sites is found; is the density high in a tiny part alone?"
+                                   : "no place for Voronoi sites is found inside; is the model thinner than rounding?");
       const Vec3 q = stretch * p;
       double nearest = std::numeric_limits<double>::infinity();
       for (const Vec3& s : sites) nearest = std::min(nearest, (q - s).norm());
       nearest /= spacing(p);
+      if (o.density) nearest *= std::cbrt(o.density(p));
       if (nearest > farthest) {
         farthest = nearest;
         best = q;

@@ -13,6 +13,7 @@
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/pieces.h"
+#include "score/chips.h"
 #include "score/jagged.h"
 #include "score/join.h"
 #include "score/partial.h"
@@ -25,7 +26,11 @@ namespace {
 class Scoring {
  public:
   Scoring(const Complex& model, const ScoreOptions& options, const Progress& progress)
-      : model_(model), o_(options), progress_(progress), skin_(corners_of(skin_of(model))) {}
+      : model_(model),
+        o_(options),
+        progress_(progress),
+        skin_(corners_of(skin_of(model))),
+        density_(relative_density(skin_, options.pattern.density)) {}
 
   Score run() {
     Try now{o_.pieces, o_.pattern.seed};
@@ -51,8 +56,10 @@ class Scoring {
     if (best_.pieces == 0 && nearest_.pieces > 0) finish(walls_of(nearest_), false);
     if (best_.pieces == 0) throw GeometryError("no such pattern can be inserted" + reason_);
     if (o_.depth < 1) {
-      if (!(o_.jagged.amplitude > 0)) refine_walls(best_.sheet, skin_, edge(), edge(), [this] { pause(); });
+      if (!is_jagged()) refine_walls(best_.sheet, skin_, edge(), edge(), [this] { pause(); });
       keep_shallow(best_.sheet, skin_, o_.depth);
+    } else {
+      best_.chips = add_chips(best_.sheet, model_, best_cut_, skin_, o_.chips, o_.pattern.seed, [this] { pause(); });
     }
     return std::move(best_);
   }
@@ -62,6 +69,7 @@ class Scoring {
 
  private:
   std::uint32_t wanted() const { return static_cast<std::uint32_t>(o_.pieces); }
+  bool is_jagged() const { return o_.jagged.amplitude > 0 || o_.jagged.edge_amplitude > 0; }
   double edge() const { return skin_.box().diagonal() / (8 * o_.jagged.frequency); }
 
   bool is_given() const { return o_.pattern.pattern == Pattern::curves || o_.pattern.pattern == Pattern::sheets; }
@@ -74,6 +82,7 @@ class Scoring {
   TriangleMesh walls_of(const Try& t) const {
     PatternOptions pattern = o_.pattern;
     pattern.seed = t.seed;
+    pattern.density = density_;
     return pattern_walls(skin_, t.cells, pattern);
   }
   double distance_from_wanted(std::uint32_t pieces) const {
@@ -115,7 +124,7 @@ class Scoring {
   // number of pieces before joining. Walls that were joined while flat may reach into pieces once
   // they are rough; the result is then 0, and nothing is kept.
   std::uint32_t finish(TriangleMesh walls, bool joined) {
-    if (o_.jagged.amplitude > 0) roughen_walls(walls, skin_, o_.jagged, [this] { pause(); });
+    if (is_jagged()) roughen_walls(walls, skin_, o_.jagged, [this] { pause(); });
     Complex cut = cut_by(walls);
     const Pieces pieces = find_pieces(cut);
     if (joined && has_wall_inside(cut, pieces)) return 0;
@@ -168,6 +177,7 @@ class Scoring {
   const ScoreOptions& o_;
   const Progress& progress_;
   const TriangleBvh skin_;
+  const Density density_;  // at most 1; empty: none is given
   Score best_;
   Complex best_cut_;  // by the sheet of best_
   Try nearest_{};
@@ -181,6 +191,12 @@ Score make_score(const Complex& model, const ScoreOptions& options, const Progre
     throw InputError("the number of pieces must be between 1 and 1000000");
   if (!(options.depth > 0 && options.depth <= 1)) throw InputError("the depth must be above 0 and at most 100 percent");
   if (options.attempts < 1) throw InputError("at least one attempt is needed");
+  const auto& chips = options.chips;
+  if (chips.count < 0 || chips.count > 100000 || !(chips.size > 0 && chips.size <= 1) ||
+      !(chips.least >= 0 && chips.least <= 1))
+    throw InputError("chips must be at most 100000, their size above 0 and at most 1, the least one from 0 to 1");
+  if (chips.count > 0 && options.depth < 1)
+    throw InputError("a partial score has no chips: none would break off; give a depth of 100 percent, or no chips");
   const auto& p = options.pattern;
   if (!(p.cluster > 0 && p.cluster <= 10))
     throw InputError("the cluster's size must be above 0 and at most 10 diagonals");

@@ -179,6 +179,10 @@ class Mesh(_Object):
                  attempts: int = 60, seed: int = 1, depth: float = 1, jagged: float = 0, frequency: float = 8,
                  octaves: int = 3, edge: float = 0, axis: Literal["x", "y", "z"] | ArrayLike | None = None,
                  impact: ArrayLike | None = None, cluster: float = 0.15, grain: float = 5,
+                 density: _Density = None, edge_detail: float = 0, edge_width: float = 0.03, chips: int = 0,
+                 chip_size: float = 0.25, image: ArrayLike | None = None,
+                 up: Literal["x", "y", "z"] | ArrayLike | None = None, fit: Literal["inside", "stretched"] = "inside",
+                 tolerance: float = 0.5,
                  curves: ArrayLike | Front | Sequence[ArrayLike | Front] | None = None,
                  sheets: _MeshLike | Sequence[_MeshLike] | None = None) -> list[Piece]: ...
 
@@ -322,11 +326,14 @@ class Score(_Object):
     @property
     def pieces(self) -> int: ...
     @property
+    def chips(self) -> int: ...
+    @property
     def attempts(self) -> int: ...
     def save(self, path: _Path) -> None: ...
 
 _Crack = Union[Score, _MeshLike, Plane, Front, ArrayLike, tuple[ArrayLike, ArrayLike],
                Sequence[Union[Score, _MeshLike, Plane, Front, ArrayLike]]]
+_Density = Union[Literal["red", "green", "blue", "alpha", "luminance"], ArrayLike, Callable[[np.ndarray], float], None]
 _Pattern = Literal["planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks", "curves", "sheets"]
 PATTERNS: tuple[_Pattern, ...]
 
@@ -334,6 +341,10 @@ def score(model: Complex | _MeshLike, pattern: _Pattern = "voronoi", progress: _
           attempts: int = 60, seed: int = 1, depth: float = 1, jagged: float = 0, frequency: float = 8,
           octaves: int = 3, edge: float = 0, axis: Literal["x", "y", "z"] | ArrayLike | None = None,
           impact: ArrayLike | None = None, cluster: float = 0.15, grain: float = 5,
+          density: _Density = None, edge_detail: float = 0, edge_width: float = 0.03, chips: int = 0,
+          chip_size: float = 0.25, image: ArrayLike | None = None,
+          up: Literal["x", "y", "z"] | ArrayLike | None = None, fit: Literal["inside", "stretched"] = "inside",
+          tolerance: float = 0.5,
           curves: ArrayLike | Front | Sequence[ArrayLike | Front] | None = None,
           sheets: _MeshLike | Sequence[_MeshLike] | None = None) -> Score: ...
 

@@ -151,13 +151,15 @@ void bind_meshes(py::module_& module) {
   py::class_<ScoreResult, std::shared_ptr<ScoreResult>> score(module.attr("Score"));
   score.def(py::pickle(
       [](const ScoreResult& self) {
-        return py::make_tuple(layout, state_of(self.sheet->mesh), self.pieces, self.attempts);
+        return py::make_tuple(layout, state_of(self.sheet->mesh), self.pieces, self.chips, self.attempts);
       },
       [](const py::tuple& state) {
-        require_entries(state, 4, "Score");
+        require_entries(state, 5, "Score");
         return std::make_shared<ScoreResult>(
-            ScoreResult{std::make_shared<Mesh>(mesh_of_state(state[1].cast<py::tuple>())),
-                        state[2].cast<std::uint32_t>(), state[3].cast<int>()});
+            ScoreResult{.sheet = std::make_shared<Mesh>(mesh_of_state(state[1].cast<py::tuple>())),
+                        .pieces = state[2].cast<std::uint32_t>(),
+                        .chips = state[3].cast<std::uint32_t>(),
+                        .attempts = state[4].cast<int>()});
       }));
   add_copies(score);
 }

@@ -2,7 +2,12 @@
 // amplitude, `seed` that of pattern and jaggedness.
 #include "score.h"
 
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
 
 #include "bind.h"
 #include "complex.h"
@@ -58,7 +63,85 @@ std::vector<geo::TriangleMesh> sheets_from(const py::object& sheets) {
   return out;
 }
 
-geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords) {
+// A Python callable of a point. Its first error ends the search, and is rethrown there.
+struct PythonDensity {
+  py::object callable;
+  std::exception_ptr error;
+
+  double operator()(const geo::Vec3& p) {
+    const GilAcquire gil;
+    try {
+      return py::float_(callable(point(p)));
+    } catch (...) {
+      error = std::current_exception();
+    }
+    throw geo::Interrupted();
+  }
+};
+
+// The mesh whose vertices paint the density.
+std::shared_ptr<Mesh> painted_mesh(py::handle model) {
+  if (!py::isinstance<Complex>(model)) return mesh_argument(model, "model");
+  const auto mesh = model.cast<std::shared_ptr<Complex>>()->model;
+  if (!mesh) throw geo::InputError("density: the complex knows no model with colours; give a callable of a point");
+  return mesh;
+}
+
+// A channel of the model's colours, a value for each vertex, or a callable, which `python` keeps.
+geo::Density density_from(const py::object& density, py::handle model, PythonDensity& python) {
+  if (density.is_none()) return {};
+  if (PyCallable_Check(density.ptr())) {
+    python.callable = density;
+    return [&python](const geo::Vec3& p) { return python(p); };
+  }
+  if (!py::isinstance<py::str>(density))
+    return geo::painted_density(painted_mesh(model)->mesh, numbers_from(density, "density"));
+  constexpr std::array channels{"red", "green", "blue", "alpha", "luminance"};
+  const auto found = std::find(channels.begin(), channels.end(), density.cast<std::string>());
+  if (found == channels.end())
+    throw geo::InputError(
+        "density: '" + density.cast<std::string>() +
+        "' is not red, green, blue, alpha or luminance; or give a value for each vertex, or a callable");
+  return geo::painted_density(painted_mesh(model)->mesh, static_cast<geo::ColorChannel>(found - channels.begin()));
+}
+
+// Brightness from a (height, width) array: floats from 0 to 1, booleans, or integers up to 255.
+geo::GrayImage image_from(const py::object& image) {
+  const auto array = py::array::ensure(image);
+  if (!array || array.ndim() != 2)
+    throw geo::InputError(
+        "image: give brightness as a (height, width) array; of colours, their mean over the last axis");
+  const char kind = array.dtype().kind();
+  const py::object numbers = kind == 'b' ? array.attr("astype")("float64") : py::object(array);
+  const auto [shape, values] = values_from(numbers, "image", 2, 2);
+  const double white = kind == 'u' || kind == 'i' ? 255 : 1;
+  geo::GrayImage gray{.width = static_cast<int>(shape[1]), .height = static_cast<int>(shape[0]), .brightness = {}};
+  for (const double v : values) gray.brightness.push_back(static_cast<float>(v / white));
+  return gray;
+}
+
+// The outlines of the argument `image`, where it is given.
+void add_image(Keywords& keywords, const geo::Box3& box, geo::ScoreOptions& o) {
+  geo::CutOutOptions cut;
+  const auto image = keywords.object("image"), up = keywords.object("up"), fit = keywords.object("fit");
+  keywords.take("tolerance", cut.tolerance, 0, 1000);
+  if (o.pattern.axis) cut.axis = *o.pattern.axis;
+  if (!up.is_none()) cut.up = axis_from(up);
+  if (!fit.is_none()) {
+    const auto name = fit.cast<std::string>();
+    if (name != "inside" && name != "stretched")
+      throw geo::InputError("fit: '" + name + "' is not inside or stretched");
+    cut.fit = name == "inside" ? geo::ImageFit::inside : geo::ImageFit::stretched;
+  }
+  if (image.is_none()) return;
+  geo::CutOut made = geo::cut_out(image_from(image), box, cut);
+  for (auto& curve : made.curves) o.pattern.curves.push_back(std::move(curve));
+  if (made.spots == 0) return;
+  const std::string text = "image: left out: " + std::to_string(made.spots) + " spots smaller than 4 pixels";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords, const geo::Box3& box) {
   geo::ScoreOptions o;
   o.pattern.pattern = geo::pattern_named(pattern);
   keywords.take("pieces", o.pieces, 1, 1000000);
@@ -69,6 +152,10 @@ geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords) {
   keywords.take("octaves", o.jagged.octaves, 1, 16);
   keywords.take("edge", o.jagged.edge, 0, 1);
   if (o.jagged.edge > 0 && o.jagged.edge < 1e-4) throw geo::InputError("score: edge must be 0 or at least 1e-4");
+  keywords.take("edge_detail", o.jagged.edge_amplitude, 0, 1);
+  keywords.take("edge_width", o.jagged.edge_width, 1e-3, 1);
+  keywords.take("chips", o.chips.count, 0, 100000);
+  keywords.take("chip_size", o.chips.size, 0, 1);
   keywords.take("cluster", o.pattern.cluster, 0, 10);
   keywords.take("grain", o.pattern.grain, 1, 1000);
   keywords.seed("seed", o.pattern.seed);
@@ -78,8 +165,9 @@ geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords) {
   if (const auto impact = keywords.object("impact"); !impact.is_none()) o.pattern.impact = point_from(impact, "impact");
   if (const auto curves = keywords.object("curves"); !curves.is_none()) o.pattern.curves = curves_from(curves);
   if (const auto sheets = keywords.object("sheets"); !sheets.is_none()) o.pattern.sheets = sheets_from(sheets);
+  add_image(keywords, box, o);
   if ((o.pattern.pattern == geo::Pattern::curves) == o.pattern.curves.empty())
-    throw geo::InputError("score: the pattern 'curves' and the argument curves go together");
+    throw geo::InputError("score: the pattern 'curves' goes with the argument curves or image");
   if ((o.pattern.pattern == geo::Pattern::sheets) == o.pattern.sheets.empty())
     throw geo::InputError("score: the pattern 'sheets' and the argument sheets go together");
   return o;
@@ -88,14 +176,28 @@ geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords) {
 std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& pattern, py::object progress,
                                    py::kwargs given) {
   Keywords keywords(std::move(given), "score");
-  const auto options = options_from(pattern, keywords);
-  keywords.finish();
+  PythonDensity python;
+  const auto density = keywords.object("density");
   ProgressReport report(std::move(progress));
   const ModelReading reading(model, "model");
-  auto made =
-      report.run([&](const geo::Progress& progress) { return geo::make_score(reading.complex(), options, progress); });
-  return std::make_shared<ScoreResult>(
-      ScoreResult{std::make_shared<Mesh>(std::move(made.sheet)), made.pieces, made.attempts});
+  auto options = options_from(pattern, keywords, reading.complex().extent());
+  keywords.finish();
+  options.pattern.density = density_from(density, model, python);
+  if (options.pattern.density && options.pattern.pattern != geo::Pattern::voronoi &&
+      options.pattern.pattern != geo::Pattern::wood)
+    throw geo::InputError("density: goes with the patterns voronoi and wood");
+  geo::Score made;
+  try {
+    made = report.run(
+        [&](const geo::Progress& progress) { return geo::make_score(reading.complex(), options, progress); });
+  } catch (const geo::Interrupted&) {
+    if (python.error) std::rethrow_exception(python.error);
+    throw;
+  }
+  return std::make_shared<ScoreResult>(ScoreResult{.sheet = std::make_shared<Mesh>(std::move(made.sheet)),
+                                                   .pieces = made.pieces,
+                                                   .chips = made.chips,
+                                                   .attempts = made.attempts});
 }
 
 py::object fracture(const py::object& self, const py::object& pieces, const std::string& pattern,
@@ -114,7 +216,9 @@ void bind_score(py::module_& module) {
       .def_property_readonly(
           "sheet", [](const ScoreResult& self) { return self.sheet; },
           "The walls, a Mesh; walls that meet share vertices.")
-      .def_readonly("pieces", &ScoreResult::pieces, "Pieces into which a score of full depth divides the model.")
+      .def_readonly("pieces", &ScoreResult::pieces,
+                    "Pieces into which a score of full depth divides the model, without chips.")
+      .def_readonly("chips", &ScoreResult::chips, "Chips that break off these, pieces of their own.")
       .def_readonly("attempts", &ScoreResult::attempts, "Number of patterns that were tried.")
       .def("__repr__",
            [](const ScoreResult& self) { return "<kerf.Score for " + std::to_string(self.pieces) + " pieces>"; });
@@ -142,6 +246,15 @@ void bind_score(py::module_& module) {
       "curves: extrusion); impact, three numbers, where cracks meet or cells are small; cluster=0.15, its radius, a\n"
       "fraction of the diagonal; grain=5, length to thickness of wood's cells. curves: lines (n, 3) or Front objects;\n"
       "sheets: meshes.\n"
+      "density (voronoi, wood): where cells are many, 'red', 'green', 'blue', 'alpha' or 'luminance' of the model's\n"
+      "colours, a value for each vertex, or a callable of a point (3,), at least 0.\n"
+      "image (curves): brightness (height, width), floats up to 1, booleans or integers up to 255; the borders of\n"
+      "black areas are swept along axis. up: what is up in it, y for the axis z, else z; fit='inside' the model's "
+      "box,\n"
+      "or 'stretched' to it; tolerance=0.5 pixels.\n"
+      "Edges: edge_detail=0, height of finer bumps near the skin, a fraction of the diagonal; edge_width=0.03, their\n"
+      "depth; chips=0 small pieces that break off edges; chip_size=0.25, their length, a fraction of the cube root of\n"
+      "the mean piece's volume.\n"
       "progress: a callable of (phase, done, total), or a tqdm bar. Raises InputError for options out of range,\n"
       "Interrupted where progress stops it.");
 }

@@ -259,6 +259,19 @@ def test_animated():
             assert abs(x_of[11] - x_of[1] - 5) < 1e-4, x_of
 
 
+def test_chips():
+    """Chips are objects beside the pieces; the border of pieces is finer with detail at edges."""
+    found = box()
+    select(found)
+    fracture(pieces=5, chips=6, chip_size=0.15, edge_detail=0.003, jagged=0.01, seed=2, hide_original=False)
+    pieces = scenes.check_pieces(found, 11)
+    assert sum(piece["volume"] < 0.02 for piece in pieces) == 6, [piece["volume"] for piece in pieces]
+    faces = sum(len(piece.data.polygons) for piece in pieces)
+    select(found)
+    fracture(pieces=5, jagged=0.01, seed=2, hide_original=False)
+    assert faces > 2 * sum(len(piece.data.polygons) for piece in scenes.check_pieces(found, 5))
+
+
 def test_patterns():
     found = box()
     select(found)

@@ -72,10 +72,10 @@ class Pickles(unittest.TestCase):
                 np.testing.assert_array_equal(piece.centroid, again.centroid)
                 self.assertEqual(len(piece.hulls), len(again.hulls))
                 self.same_meshes(piece.hulls[0], again.hulls[0])
-        score = kerf.score(dressed(), "voronoi", pieces=3)
+        score = kerf.score(dressed(), "voronoi", pieces=3, chips=4)
         for again in self.copies(score):
             self.same_meshes(score.sheet, again.sheet)
-            self.assertEqual((score.pieces, score.attempts), (again.pieces, again.attempts))
+            self.assertEqual((score.pieces, score.chips, score.attempts), (again.pieces, again.chips, again.attempts))
 
     def test_complexes(self):
         cut = dressed().crack(plane())

@@ -131,6 +131,24 @@ TEST_CASE("A user's curves and sheets are taken as they are", "[score]") {
   }
 }
 
+TEST_CASE("Curves that meet in points part a model there", "[score]") {
+  // Squares of separate curves, with edges in common planes, and a fan of three curves in a point.
+  const Complex block = Complex::from_skin(make_block({12, 6, 1}, 0.5));
+  ScoreOptions options;
+  options.pattern.pattern = Pattern::curves;
+  for (int i = 0; i < 12; ++i)
+    for (int j = 0; j < 6; ++j) {
+      const Vec3 a(i + 0.23, j + 0.27, 0), b = a + Vec3(0.51, 0, 0), c = b + Vec3(0, 0.49, 0), d = a + Vec3(0, 0.49, 0);
+      for (const auto& curve : {std::vector{a, b, c}, std::vector{a, d}, std::vector{c, d}})
+        options.pattern.curves.push_back(curve);
+    }
+  CHECK(make_score(block, options).pieces == 73);
+  const Vec3 middle(3, 1.5, 0);
+  options.pattern.curves = {{middle, {-9, 1.4, 0}}, {middle, {25, 1.45, 0}}, {{2.9, 19, 0}, middle}};
+  CHECK(make_score(block, options).pieces == 3);
+  check_score(block, options);
+}
+
 TEST_CASE("A model that is cut already is scored further", "[score]") {
   const Complex block = Complex::from_skin(make_block({2, 1, 1}, 0.5));
   ScoreOptions options;

@@ -242,6 +242,16 @@ def something_to_cut():
     run(f"kerf-crack block.ply {options[1]} halve.front -o x.ply && kerf-crack block.ply {options[3]} 0.1 -o x.ply")
 
 
+@case("; give a file with colours of vertices, or another --density", "; edges have room for more of a smaller --chip-size")
+def densities_and_chips():
+    run("kerf-model block --edge 0.5 -o block.ply")
+    said("kerf-score block.ply --density red -o x.front", r"give a file with colours of vertices, or another --density")
+    run("kerf-score block.ply --density x --pieces 6 -o x.front")
+    wanted = "kerf-score block.ply --pieces 2 --chips 40 -o x.front"
+    match = said(wanted, r"edges have room for more of a smaller (--chip-size)", 0)
+    assert not run(f"{wanted} {match[1]} 0.03")[1]
+
+
 @case("' is a sheet, not a curve; give it with --sheets", "; another --seed or more --attempts may find them")
 def scores():
     run("kerf-model block --edge 0.25 -o block.ply && kerf-score block.ply --pieces 3 -o walls.front")

@@ -374,8 +374,47 @@ scores)
   quietly kerf-crack block.ply --front curve.front -o curve.ply
   kerf-info --json curve.ply | grep -q '"pieces":2,' || fail "one curve does not make 2 pieces"
   kerf-info --json curves.ply | grep -q '"pieces":4,' || fail "two curves that cross do not make 4 pieces"
-  kerf-score block.ply --pattern planes --pieces 3 --json -o planes.front | grep -q '^{"pattern":"planes","pieces":3,"attempts":' || fail "kerf-score --json"
-  for options in "--pattern zigzag" "--pieces 0" "--attempts 0" "--jagged 1" "--bumps 0" "--depth 0%" "--depth 80" "--axis 0,0,0" "--axis up" "--impact 1,2" "--cluster 0" "--grain 0" "--pattern curves" "--sheets x.obj"; do
+  kerf-score block.ply --pattern planes --pieces 3 --json -o planes.front | grep -q '^{"pattern":"planes","pieces":3,"chips":0,"attempts":' || fail "kerf-score --json"
+
+  # Chips are pieces beside the others; detail at edges changes walls alone.
+  quietly kerf-score block.ply --pieces 6 --chips 10 --chip-size 0.15 --edge-detail 0.004 --json -o chips.front >chips.json
+  grep -q '"pieces":6,"chips":10,' chips.json || fail "chips: $(cat chips.json)"
+  quietly kerf-crack block.ply --front chips.front -o chips.ply
+  quietly kerf-info --check -q chips.ply
+  kerf-info --json chips.ply | grep -q '"pieces":16,' || fail "6 pieces and 10 chips are not 16"
+  kerf-score -j1 block.ply --pieces 6 --chips 10 --chip-size 0.15 --edge-detail 0.004 -o one.front
+  cmp chips.front one.front || fail "threads change chips"
+
+  # Density: red is high at x > 1, where most cells are then.
+  kerf-repair -q block.ply -o block.off
+  awk 'NR == 2 { n = $1; print "ply\nformat ascii 1.0\nelement vertex " $1 "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face " $2 "\nproperty list uchar int vertex_indices\nend_header"; next }
+    NR > 2 && NR <= n + 2 { print $0, ($1 > 1 ? 255 : 20), 0, 0; next } NR > n + 2' block.off >painted.ply
+  quietly kerf-score painted.ply --density red --pieces 24 -o red.front
+  quietly kerf-score painted.ply --density falling-x --pieces 24 -o falling.front
+  cmp -s red.front falling.front && fail "densities are alike"
+  expect 65 "has no colours" kerf-score block.ply --density red -o x.front
+  expect 65 "0 everywhere" kerf-score painted.ply --density green -o x.front
+  expect 2 "--density" kerf-score painted.ply --density red --pattern planes -o x.front
+
+  # Images: a disc is cut out; files that are no such images are refused.
+  python3 "$(dirname "$script")/draw_png.py" disc.png 60 60 "(x - 30) ** 2 + (y - 30) ** 2 < 400"
+  quietly kerf-score block.ply --pattern curves --image disc.png -o disc.front
+  quietly kerf-crack block.ply --front disc.front -o disc.ply
+  kerf-info --json disc.ply | grep -q '"pieces":2,' || fail "a disc does not make 2 pieces"
+  quietly kerf-score block.ply --pattern curves --image disc.png --fit stretched --axis x --up y --tolerance 0.1 -o stretched.front
+  python3 "$(dirname "$script")/draw_png.py" spots.png 60 60 "(x, y) in ((5, 5), (50, 5)) or (x - 30) ** 2 + (y - 30) ** 2 < 400"
+  kerf-score block.ply --pattern curves --image spots.png -o spots.front 2>said.txt
+  grep -q "spots.png: left out: 2 spots smaller than 4 pixels" said.txt || fail "spots: $(cat said.txt)"
+  python3 "$(dirname "$script")/draw_png.py" white.png 60 60 False
+  expect 65 "white.png: the image has no border between black and white" kerf-score block.ply --pattern curves --image white.png -o x.front
+  head -c 100 disc.png >short.png
+  expect 65 "short.png: is damaged" kerf-score block.ply --pattern curves --image short.png -o x.front
+  expect 65 "lines.obj: is not a PNG" kerf-score block.ply --pattern curves --image lines.obj -o x.front
+  python3 "$(dirname "$script")/draw_png.py" huge.png 60000 60000 ""
+  expect 65 "huge.png: has more than 16 million pixels" kerf-score block.ply --pattern curves --image huge.png -o x.front
+  expect 66 "cannot" kerf-score block.ply --pattern curves --image missing.png -o x.front
+  [ -e x.front ] && fail "a refused score leaves a file"
+  for options in "--pattern zigzag" "--pieces 0" "--attempts 0" "--jagged 1" "--bumps 0" "--depth 0%" "--depth 80" "--axis 0,0,0" "--axis up" "--impact 1,2" "--cluster 0" "--grain 0" "--pattern curves" "--sheets x.obj" "--chips -1" "--chip-size 0" "--edge-detail 1" "--edge-width 0" "--tolerance -1" "--density grey" "--chips 3 --depth 50%" "--image x.png"; do
     expect 2 "${options%% *}" kerf-score block.ply $options -o x.front
   done
   expect 66 "cannot" kerf-score missing.ply -o x.front

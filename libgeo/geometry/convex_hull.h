@@ -16,7 +16,7 @@ namespace geo {
 /// worst are balls. Empty if all points are coplanar.
 std::vector<Triangle> convex_hull(std::span<const Vec3> points, std::size_t max_corners = ~std::size_t(0));
 
-/// A convex polyhedron: its corners, all of them used, and triangles counter-clockwise from outside.
+/// A convex polyhedron: its corners, each used, and triangles counter-clockwise from outside.
 struct ConvexPolyhedron {
   std::vector<Vec3> corners;
   std::vector<Triangle> triangles;

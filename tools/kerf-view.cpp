@@ -38,7 +38,7 @@ Kind kind_of_output(const std::string& path) {
 
 struct Command {
   std::vector<std::string> paths;
-  std::string size, camera = "30,22", cutaway, color = "patch", up = "auto", skin = "#e0803a", before, steps;
+  std::string size, camera = "30,22", cutaway, color = "model", up = "auto", skin = "#e0803a", before, steps;
   bool no_ground = false, hollow = false;
   int columns = 4, frames = 0, samples = 3, node = -1;
   double zoom = 1, rate = 24, megabytes = 20;
@@ -52,9 +52,7 @@ view::Look checked(const Command& w, view::Look look) {
   if (!(w.rate > 0 && w.rate <= 1000)) throw tool::UsageError("--rate must be positive and at most 1000");
   if (!(w.megabytes >= 1 && w.megabytes <= 500)) throw tool::UsageError("--megabytes is from 1 to 500");
   if (w.node < -1) throw tool::UsageError("--node must not be negative");
-  look.coloring = w.color == "piece"   ? view::Coloring::piece
-                  : w.color == "plain" ? view::Coloring::plain
-                                       : view::Coloring::patch;
+  look.coloring = view::coloring_of(w.color);
   try {
     look.skin = view::parse_color(w.skin);
   } catch (const geo::InputError& e) {
@@ -199,9 +197,10 @@ int main(int argc, char** argv) {
            "Which axis of the model is up, y in most OBJ and glTF files; auto: of a run what gravity says, else z");
   t.option("--cut-away", w.cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
   t.flag("--hollow", w.hollow, "Look into the cut-away body instead of at a filled section");
-  t.choice("--color", w.color, {"patch", "piece", "plain"},
-           "Colours: of skin and the two sheets of cracks, of pieces, or one");
-  t.option("--skin", w.skin, "Colour of the skin, #rrggbb");
+  t.choice("--color", w.color, {"model", "patch", "piece", "plain"},
+           "Colours: the model's materials and colours, where it has them; skin and the two sheets of cracks; pieces; "
+           "or one");
+  t.option("--skin", w.skin, "Colour of the skin, #rrggbb, where the model brings none");
   t.flag("--nodes", look.nodes, "Draw a body's nodes, coloured by --field");
   t.option("--field", look.field,
            "radius, spacing, volume, neighbors, component or debris; of a run strain, displacement, speed");
@@ -257,7 +256,7 @@ int main(int argc, char** argv) {
 
     if (kind == Kind::html) {
       const view::PageOptions page_options{
-          .megabytes = w.megabytes, .before = look.before, .frame_rate = w.rate, .y_up = eye.y_up};
+          .megabytes = w.megabytes, .before = look.before, .frame_rate = w.rate, .y_up = eye.y_up, .color = w.color};
       const view::Page page = folder ? view::page_of(view::find_run(w.paths[0]), page_options, progress)
                                      : view::page_of(view::read_subject(w.paths), page_options, progress);
       geo::report(progress, "done", 1, 1);

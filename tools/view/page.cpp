@@ -10,6 +10,7 @@
 #include <optional>
 
 #include <kerf/files.h>
+#include "run_materials.h"
 #include "version.h"
 #include "view/cut_edges.h"
 #include "view/fields.h"
@@ -350,6 +351,7 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
   for (const auto& path : run.frames) {
     geo::report(progress, "read", frames.size(), run.frames.size());
     frames.push_back(geo::read_surface(path).mesh);
+    tool::add_run_materials(frames.back(), path);
     box.add(geo::bounding_box(frames.back()));
     needed.triangles =
         std::max(needed.triangles, double(run.frames.size() + 1) * double(frames.back().triangles.size()));

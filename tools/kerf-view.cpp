@@ -90,8 +90,7 @@ class Drawing {
 
   view::Picture still() {
     const view::Subject subject = view::read_subject(w_.paths);
-    view::Stage stage = view::stage_of(subject, look_);
-    stage.ground = !w_.no_ground;
+    view::Stage stage = staged(subject);
     look_at(stage);
     if (look_.node && w_.zoom > 1) {  // close-up: the node in the centre
       const geo::Vec3 away = subject.nodes.position[*look_.node] - eye_.box.center();
@@ -120,7 +119,7 @@ class Drawing {
     if (run)
       look_around(files);
     else {
-      stage = staged(w_.paths);
+      stage = staged(view::read_subject(w_.paths));
       look_at(stage);
       eye_.all_round = true;
     }
@@ -134,11 +133,14 @@ class Drawing {
     if (kind_of_output(target) == Kind::mp4) return view::write_mp4(target, count, w_.rate, picture);
     geo::write_all(target, [&](std::ostream& out) { view::write_webp(out, count, w_.rate, picture); });
   }
+  // Whether no image of a material was left out.
+  bool complete() const { return complete_; }
 
  private:
-  view::Stage staged(const std::vector<std::string>& paths) const {
-    view::Stage stage = view::stage_of(view::read_subject(paths), look_);
+  view::Stage staged(const view::Subject& subject) {
+    view::Stage stage = view::stage_of(subject, look_);
     stage.ground = !w_.no_ground;
+    complete_ = complete_ && stage.paint.complete;
     return stage;
   }
   // Extends the view to another stage.
@@ -151,14 +153,14 @@ class Drawing {
   // One camera and one floor for all frames.
   void look_around(const std::vector<std::string>& files) {
     for (const auto& file : files) {
-      const view::Stage stage = staged({file});
+      const view::Stage stage = staged(view::read_subject({file}));
       look_at(stage);
       all_.add(view::box_of(stage));
     }
   }
-  view::Picture frame(const std::string& file, std::size_t i, std::size_t count) const {
+  view::Picture frame(const std::string& file, std::size_t i, std::size_t count) {
     geo::report(progress_, "render", i, count);
-    view::Stage stage = staged({file});
+    view::Stage stage = staged(view::read_subject({file}));
     stage.ground_level = all_.lo[eye_.y_up ? 1 : 2] - 1e-4 * all_.diagonal();
     return view::render(stage, eye_, options_);
   }
@@ -167,6 +169,7 @@ class Drawing {
   const view::Look& look_;
   view::Camera eye_;
   geo::Box3 all_;  // of all frames
+  bool complete_ = true;
   view::RenderOptions options_;
   geo::Progress progress_;
 };
@@ -267,9 +270,13 @@ int main(int argc, char** argv) {
     Drawing drawing(w, look, eye, options, progress);
     std::vector<std::string> files;
     if (folder) files = spread(view::find_run(w.paths[0]).frames, w.frames > 0 || kind != Kind::png ? w.frames : 12);
-    if (kind != Kind::png) return drawing.animate(target, files);
-    const view::Picture picture = folder ? drawing.sheet(files) : drawing.still();
-    geo::report(progress, "done", 1, 1);
-    geo::write_all(target, [&](std::ostream& out) { view::write_png(out, picture); });
+    if (kind == Kind::png) {
+      const view::Picture picture = folder ? drawing.sheet(files) : drawing.still();
+      geo::report(progress, "done", 1, 1);
+      geo::write_all(target, [&](std::ostream& out) { view::write_png(out, picture); });
+    } else {
+      drawing.animate(target, files);
+    }
+    if (!drawing.complete()) t.say(std::string("kerf-view: ") + view::images_left_out);
   });
 }

@@ -37,6 +37,7 @@ BaseColors base_colors(const Attributes& attributes) {
   std::map<std::string, const PreviewMaterial*> by_name;
   for (const PreviewMaterial& material : found.materials) by_name.try_emplace(material.name, &material);
   BaseColors result;
+  result.complete = !found.lost.contains(lost_images);
   std::map<std::size_t, std::size_t> taken;  // images of the library, with their places in the result
   for (const std::string& group : groups) {
     const auto own = by_name.find(group);

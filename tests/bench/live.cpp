@@ -16,6 +16,7 @@
 #include "cut_times.h"
 #include "kerf/mesh.h"
 #include "live/loop.h"
+#include "live/server.h"
 #include "live_heap.h"
 #include "sample_scenes.h"
 

@@ -306,6 +306,7 @@ TEST_CASE("base colours are factors, images and their places", "[materials]") {
   CHECK((bark.placement * Vec2(0.5, 0.25) + bark.offset - Vec2(1.25, 1.25)).norm() < 1e-12);
   CHECK(colors.of_group[2].factor == Color(0.42, 0.36, 0.31, 1));
   CHECK(colors.of_group[3].factor == Color(0.8, 0.8, 0.8, 1));
+  CHECK(colors.complete);
   // Colours of corners are all that is known of a group without a material.
   a.color.resize(a.group.size());
   CHECK(base_colors(a).of_group[1].factor == bark.factor);

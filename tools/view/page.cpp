@@ -186,6 +186,7 @@ class Writer {
     about_["color"] = options.color;
     about_["paint"] = paint_ ? paint_->about() : json(nullptr);
     about_["arrays"] = pack_.manifest();
+    if (paint_ && !paint_->complete()) notice("images", images_left_out);
     Page page;
     for (const auto& [key, text] : notice_of_) page.notices.push_back(text);
     about_["notices"] = page.notices;

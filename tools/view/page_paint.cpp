@@ -59,6 +59,7 @@ std::uint32_t PagePaint::number_of(const Material& material) {
 
 PaintArrays PagePaint::of(const geo::TriangleMesh& mesh) {
   const Paint paint = paint_of(mesh, images_);
+  complete_ = complete_ && paint.complete;
   std::vector<std::uint32_t> number;  // of the page, per material of the surface
   for (const PaintMaterial& own : paint.materials) {
     Material material;

@@ -37,6 +37,9 @@ class PagePaint {
   /// written.
   nlohmann::ordered_json about() const;
 
+  /// Whether no image was left out.
+  bool complete() const { return complete_; }
+
  private:
   struct Material {
     std::int64_t image = -1;
@@ -46,6 +49,7 @@ class PagePaint {
   std::uint32_t number_of(const Material& material);
 
   std::size_t max_bytes_;
+  bool complete_ = true;
   PaintImages images_;
   std::vector<std::shared_ptr<const PaintImage>> used_;
   std::vector<Material> materials_;

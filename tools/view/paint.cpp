@@ -37,6 +37,7 @@ Paint paint_of(const geo::TriangleMesh& mesh, PaintImages& known) {
   if (!has_paint(mesh)) return paint;
   const geo::Attributes& a = mesh.attributes;
   const Painter painter = painter_of(a);
+  paint.complete = painter.colors.complete;
   for (const std::string& file : painter.colors.images) {
     auto& image = known[file];
     if (!image)
@@ -85,6 +86,7 @@ Color Paint::color(std::size_t triangle, float u, float v) const {
 
 void Paint::add(const Paint& other, std::size_t first) {
   if (other.material.empty()) return;
+  complete = complete && other.complete;
   const auto first_material = static_cast<std::uint32_t>(materials.size());
   for (PaintMaterial own : other.materials) {
     if (own.texture != PaintMaterial::no_texture) own.texture += textures.size();

@@ -26,6 +26,9 @@ struct PaintImage {
 /// Images by the bytes of their files: those of other frames are not decoded again.
 using PaintImages = std::map<std::string, std::shared_ptr<const PaintImage>>;
 
+/// The line that a picture or page says where Paint::complete is false.
+inline constexpr const char* images_left_out = "left out: images of materials in other formats than PNG and JPEG";
+
 /// Colours of triangles, or nothing where arrays are empty.
 struct Paint {
   static constexpr std::uint32_t none = ~0u;
@@ -34,6 +37,7 @@ struct Paint {
   std::vector<std::uint32_t> material;             ///< per triangle; `none`: it is not painted
   std::vector<std::array<Eigen::Vector2f, 3>> at;  ///< per corner: the place in the image
   std::vector<std::array<Color, 3>> tint;          ///< per corner: a factor, linear
+  bool complete = true;                            ///< false: images of other formats than PNG and JPEG are left out
 
   /// Whether a triangle is painted.
   bool has(std::size_t triangle) const { return triangle < material.size() && material[triangle] != none; }

@@ -31,6 +31,7 @@ struct BaseColor {
 struct BaseColors {
   std::vector<BaseColor> of_group;
   std::vector<std::string> images;  ///< bytes of PNG or JPEG files, colours in sRGB
+  bool complete = true;             ///< false: images of other formats are left out
 };
 
 /// The base colour of each of the surface's groups, and of one group "skin" where it has none: that

@@ -1,7 +1,7 @@
 # Sourced by samples/run and tests/run: the packages, and the build.
 packages="build-essential cmake ninja-build ccache pkg-config git ca-certificates
   libcgal-dev libgmp-dev libeigen3-dev libpcl-dev libopenvdb-dev libimath-dev libblosc-dev libtbb-dev libboost-dev libboost-iostreams-dev libboost-graph-dev
-  libcli11-dev catch2 libembree-dev libpng-dev zlib1g-dev libwebp-dev libjs-three libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev libhdf5-dev libassimp-dev
+  libcli11-dev catch2 libembree-dev libjpeg-dev libpng-dev zlib1g-dev libwebp-dev libjs-three libtomlplusplus-dev nlohmann-json3-dev libxxhash-dev libhdf5-dev libassimp-dev
   libhwy-dev libnanoflann-dev libbullet-dev libcgal-demo python3 lowdown doxygen"
 test_packages="universal-ctags clang-format chromium snakemake ffmpeg python3-numpy python3-vtk9 assimp-utils zsh blender xvfb xauth
   python3-dev pybind11-dev mypy python3-pip python3-venv python3-scipy python3-tqdm python3-matplotlib python3-sphinx

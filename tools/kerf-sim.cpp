@@ -230,6 +230,8 @@ void simulate(const Command& command, const tool::Tool& t) {
   std::error_code error;
   const bool resumed = command.resume && fs::exists(folder.checkpoint(), error);
   const auto recorded = open_run(setup, folder, last, resumed, t);
+  sim::tell_lost_materials(setup, true);
+  if (setup.materials.glb) folder.write_text(folder.materials(), *setup.materials.glb);
   const geo::Progress progress = t.progress();
   recorded->advance_to(last, progress);
   geo::report(progress, "done", 1, 1);

@@ -38,7 +38,7 @@ Kind kind_of_output(const std::string& path) {
 
 struct Command {
   std::vector<std::string> paths;
-  std::string size, camera = "30,22", cutaway, color = "patch", up = "auto", skin = "#e0803a", before, steps;
+  std::string size, camera = "30,22", cutaway, color = "model", up = "auto", skin = "#e0803a", before, steps;
   bool no_ground = false, hollow = false;
   int columns = 4, frames = 0, samples = 3, node = -1;
   double zoom = 1, rate = 24, megabytes = 20;
@@ -52,9 +52,7 @@ view::Look checked(const Command& w, view::Look look) {
   if (!(w.rate > 0 && w.rate <= 1000)) throw tool::UsageError("--rate must be positive and at most 1000");
   if (!(w.megabytes >= 1 && w.megabytes <= 500)) throw tool::UsageError("--megabytes is from 1 to 500");
   if (w.node < -1) throw tool::UsageError("--node must not be negative");
-  look.coloring = w.color == "piece"   ? view::Coloring::piece
-                  : w.color == "plain" ? view::Coloring::plain
-                                       : view::Coloring::patch;
+  look.coloring = view::coloring_of(w.color);
   try {
     look.skin = view::parse_color(w.skin);
   } catch (const geo::InputError& e) {
@@ -92,8 +90,7 @@ class Drawing {
 
   view::Picture still() {
     const view::Subject subject = view::read_subject(w_.paths);
-    view::Stage stage = view::stage_of(subject, look_);
-    stage.ground = !w_.no_ground;
+    view::Stage stage = staged(subject);
     look_at(stage);
     if (look_.node && w_.zoom > 1) {  // close-up: the node in the centre
       const geo::Vec3 away = subject.nodes.position[*look_.node] - eye_.box.center();
@@ -122,7 +119,7 @@ class Drawing {
     if (run)
       look_around(files);
     else {
-      stage = staged(w_.paths);
+      stage = staged(view::read_subject(w_.paths));
       look_at(stage);
       eye_.all_round = true;
     }
@@ -136,11 +133,14 @@ class Drawing {
     if (kind_of_output(target) == Kind::mp4) return view::write_mp4(target, count, w_.rate, picture);
     geo::write_all(target, [&](std::ostream& out) { view::write_webp(out, count, w_.rate, picture); });
   }
+  // Whether no image of a material was left out.
+  bool complete() const { return complete_; }
 
  private:
-  view::Stage staged(const std::vector<std::string>& paths) const {
-    view::Stage stage = view::stage_of(view::read_subject(paths), look_);
+  view::Stage staged(const view::Subject& subject) {
+    view::Stage stage = view::stage_of(subject, look_);
     stage.ground = !w_.no_ground;
+    complete_ = complete_ && stage.paint.complete;
     return stage;
   }
   // Extends the view to another stage.
@@ -153,14 +153,14 @@ class Drawing {
   // One camera and one floor for all frames.
   void look_around(const std::vector<std::string>& files) {
     for (const auto& file : files) {
-      const view::Stage stage = staged({file});
+      const view::Stage stage = staged(view::read_subject({file}));
       look_at(stage);
       all_.add(view::box_of(stage));
     }
   }
-  view::Picture frame(const std::string& file, std::size_t i, std::size_t count) const {
+  view::Picture frame(const std::string& file, std::size_t i, std::size_t count) {
     geo::report(progress_, "render", i, count);
-    view::Stage stage = staged({file});
+    view::Stage stage = staged(view::read_subject({file}));
     stage.ground_level = all_.lo[eye_.y_up ? 1 : 2] - 1e-4 * all_.diagonal();
     return view::render(stage, eye_, options_);
   }
@@ -169,6 +169,7 @@ class Drawing {
   const view::Look& look_;
   view::Camera eye_;
   geo::Box3 all_;  // of all frames
+  bool complete_ = true;
   view::RenderOptions options_;
   geo::Progress progress_;
 };
@@ -199,9 +200,10 @@ int main(int argc, char** argv) {
            "Which axis of the model is up, y in most OBJ and glTF files; auto: of a run what gravity says, else z");
   t.option("--cut-away", w.cutaway, "Remove what lies beyond the plane NX,NY,NZ[,OFFSET] (offset in half diagonals)");
   t.flag("--hollow", w.hollow, "Look into the cut-away body instead of at a filled section");
-  t.choice("--color", w.color, {"patch", "piece", "plain"},
-           "Colours: of skin and the two sheets of cracks, of pieces, or one");
-  t.option("--skin", w.skin, "Colour of the skin, #rrggbb");
+  t.choice("--color", w.color, {"model", "patch", "piece", "plain"},
+           "Colours: the model's materials and colours, where it has them; skin and the two sheets of cracks; pieces; "
+           "or one");
+  t.option("--skin", w.skin, "Colour of the skin, #rrggbb, where the model brings none");
   t.flag("--nodes", look.nodes, "Draw a body's nodes, coloured by --field");
   t.option("--field", look.field,
            "radius, spacing, volume, neighbors, component or debris; of a run strain, displacement, speed");
@@ -257,7 +259,7 @@ int main(int argc, char** argv) {
 
     if (kind == Kind::html) {
       const view::PageOptions page_options{
-          .megabytes = w.megabytes, .before = look.before, .frame_rate = w.rate, .y_up = eye.y_up};
+          .megabytes = w.megabytes, .before = look.before, .frame_rate = w.rate, .y_up = eye.y_up, .color = w.color};
       const view::Page page = folder ? view::page_of(view::find_run(w.paths[0]), page_options, progress)
                                      : view::page_of(view::read_subject(w.paths), page_options, progress);
       geo::report(progress, "done", 1, 1);
@@ -268,9 +270,13 @@ int main(int argc, char** argv) {
     Drawing drawing(w, look, eye, options, progress);
     std::vector<std::string> files;
     if (folder) files = spread(view::find_run(w.paths[0]).frames, w.frames > 0 || kind != Kind::png ? w.frames : 12);
-    if (kind != Kind::png) return drawing.animate(target, files);
-    const view::Picture picture = folder ? drawing.sheet(files) : drawing.still();
-    geo::report(progress, "done", 1, 1);
-    geo::write_all(target, [&](std::ostream& out) { view::write_png(out, picture); });
+    if (kind == Kind::png) {
+      const view::Picture picture = folder ? drawing.sheet(files) : drawing.still();
+      geo::report(progress, "done", 1, 1);
+      geo::write_all(target, [&](std::ostream& out) { view::write_png(out, picture); });
+    } else {
+      drawing.animate(target, files);
+    }
+    if (!drawing.complete()) t.say(std::string("kerf-view: ") + view::images_left_out);
   });
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include <kerf/check.h>
 #include <kerf/complex.h>
@@ -90,18 +91,16 @@ inline void require_whole(geo::TriangleMesh& mesh, const std::string& path, cons
   mesh.site.clear();
 }
 
-/// A model for a scene: in metres, and without the materials of a .glb, as each frame would hold
-/// their images. Prints what that changes, and a unit of the file that `scale` leaves out.
-inline void for_scene(geo::TriangleMesh& mesh, const std::string& path, double scale) {
+/// A model for a scene: in metres, and without its materials, which are handed back. Prints a unit
+/// of the file that `scale` leaves out.
+inline geo::MaterialLibrary for_scene(geo::TriangleMesh& mesh, const std::string& path, double scale) {
   geo::SurfaceFile about;
-  if (mesh.attributes.library.glb)
-    about.notes.push_back("left out: materials but their names, which frames of a run do not hold");
   if (mesh.unit > 0 && mesh.unit != 1 && scale == 1)
     about.notes.push_back("states a unit of " + number(mesh.unit) +
                           " m, but a scene is in metres; give the body scale = " + number(mesh.unit));
   say_notes(about, path);
-  mesh.attributes.library = {};
   mesh.unit = mesh.unit > 0 ? 1 : 0;
+  return std::exchange(mesh.attributes.library, {});
 }
 
 /// Says what a format does not hold of a surface; nothing where `things` is empty.

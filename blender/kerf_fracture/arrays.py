@@ -24,6 +24,47 @@ def weights(corners, triangles):
     return found
 
 
+def sides(polygon, loop):
+    """The number of corners of each polygon of a model, from the polygon (m,) of each triangle and which corners it has (m, 3)."""
+    found = numpy.zeros(polygon.max(initial=-1) + 1, int)
+    numpy.maximum.at(found, polygon, loop.max(1) + 1)
+    return found
+
+
+def faces(surface, triangles, polygon, loop, count):
+    """Faces made of triangles (m, 3): polygons of the model where all of their triangles are there, as they were, else triangles.
+
+    surface (m,): numbers in ascending order, a polygon is within one. polygon (m,): of the model; -1: none. loop (m, 3): the model's
+    corner at each corner, in the order of the polygon; -1: none. count: sides() of the model. Returns the faces' corners, 3 t + k for corner k of triangle t, one
+    face after another; the number of corners of each face; and the first triangle of each.
+    """
+    kept = numpy.flatnonzero((polygon >= 0) & (loop >= 0).all(1))
+    keys, group, size = numpy.unique(surface[kept] * len(count) + polygon[kept], return_inverse=True, return_counts=True)
+    group = numpy.repeat(group.ravel(), 3)
+    corner = (3 * kept[:, None] + numpy.arange(3)).ravel()
+    order = numpy.lexsort((loop[kept].ravel(), group))
+    group, corner = group[order], corner[order]
+    place, vertex = loop.ravel()[corner], triangles.ravel()[corner]
+    again, torn = numpy.zeros(len(group), bool), numpy.zeros(len(group), bool)
+    again[1:] = (group[1:] == group[:-1]) & (place[1:] == place[:-1])  # a corner of the polygon belongs to several triangles
+    whole = numpy.bincount(group[~again], minlength=len(keys)) == size + 2
+    torn[1:] = again[1:] & (vertex[1:] != vertex[:-1])
+    whole[group[torn]] = False
+    whole &= size + 2 == count[keys % max(len(count), 1)]
+
+    joined = numpy.zeros(len(triangles), bool)
+    joined[corner[whole[group]] // 3] = True
+    single = numpy.flatnonzero(~joined)
+    used_corner = whole[group] & ~again
+    first = numpy.full(len(keys), len(triangles))
+    numpy.minimum.at(first, group, corner // 3)
+    begins = numpy.concatenate([first[group[used_corner]], numpy.repeat(single, 3)])
+    corners = numpy.concatenate([corner[used_corner], (3 * single[:, None] + numpy.arange(3)).ravel()])
+    order = numpy.argsort(begins, kind="stable")
+    firsts, sizes = numpy.unique(begins, return_counts=True)
+    return corners[order], sizes, firsts
+
+
 def interpolate(weight, source, values):
     """Values (m, 3, d) at corners, from values (n, 3, d) of the model's triangles."""
     return numpy.einsum("mij,mjd->mid", weight, values[source])

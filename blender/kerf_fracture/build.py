@@ -13,15 +13,20 @@ LOOP_TOTAL_IS_GIVEN = not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].
 
 def plain_mesh(name, vertices, triangles):
     """A mesh of vertices (n, 3) and triangles (m, 3)."""
+    return _mesh(name, vertices, numpy.asarray(triangles).ravel(), numpy.full(len(triangles), 3))
+
+
+def _mesh(name, vertices, corners, sizes):
+    """A mesh of vertices (n, 3) and faces: `corners` are their vertices, one face after another, `sizes` the numbers of them."""
     mesh = bpy.data.meshes.new(name)
     mesh.vertices.add(len(vertices))
     mesh.vertices.foreach_set("co", numpy.ascontiguousarray(vertices, numpy.float32).ravel())
-    mesh.loops.add(3 * len(triangles))
-    mesh.loops.foreach_set("vertex_index", numpy.ascontiguousarray(triangles, numpy.int32).ravel())
-    mesh.polygons.add(len(triangles))
-    mesh.polygons.foreach_set("loop_start", numpy.arange(0, 3 * len(triangles), 3, dtype=numpy.int32))
+    mesh.loops.add(len(corners))
+    mesh.loops.foreach_set("vertex_index", numpy.ascontiguousarray(corners, numpy.int32))
+    mesh.polygons.add(len(sizes))
+    mesh.polygons.foreach_set("loop_start", (numpy.cumsum(sizes) - sizes).astype(numpy.int32))
     if LOOP_TOTAL_IS_GIVEN:
-        mesh.polygons.foreach_set("loop_total", numpy.full(len(triangles), 3, numpy.int32))
+        mesh.polygons.foreach_set("loop_total", numpy.asarray(sizes, numpy.int32))
     mesh.update(calc_edges=True)
     return mesh
 
@@ -42,7 +47,7 @@ def inner_material(name):
 
 def dressed_meshes(source, surfaces, names, inner):
     """A mesh for each surface, a tuple (vertices, triangles, source triangles or -1 for inner ones, uv (m, 3, 2) of inner ones, the
-    origin of the new mesh). Attributes of outer triangles are those of the source. Inner ones have the last material slot, `inner`.
+    origin of the new mesh). Attributes of outer triangles are those of the source, and its faces stay where all of their triangles do. Inner ones have the last material slot, `inner`.
     None: there are no inner ones, and normals are custom ones only where the source's are."""
     triangle = numpy.concatenate([surface[2] for surface in surfaces])
     starts = numpy.cumsum([0] + [len(surface[0]) for surface in surfaces])
@@ -72,35 +77,55 @@ def dressed_meshes(source, surfaces, names, inner):
     uvs = [(layer, corners(layer.values, tile[~outer])) for layer in source.uvs]
     colors = [(layer, corners(layer.values, GREY)) for layer in source.colors]
 
+    surface = numpy.repeat(numpy.arange(len(surfaces)), numpy.diff(ends))
+    polygon, loop = numpy.full(len(triangles), -1), numpy.full((len(triangles), 3), -1)
+    nearest = weight.argmax(-1)
+    old = numpy.take_along_axis(source.model.triangles[from_source], nearest, -1)
+    unchanged = (source.model.vertices[old] == vertices[triangles[outer]]).all((1, 2))[:, None]
+    polygon[outer] = source.polygon[from_source]
+    loop[outer] = numpy.where(unchanged, numpy.take_along_axis(source.loop[from_source], nearest, -1), -1)
+    face_corners, sizes, firsts = arrays.faces(surface, triangles, polygon, loop, arrays.sides(source.polygon, source.loop))
+    face_ends = numpy.searchsorted(firsts, ends)
+    corner_ends = numpy.r_[0, numpy.cumsum(sizes)][face_ends]
+
     meshes = []
-    for number, (points, own, _, own_tile, origin) in enumerate(surfaces):
+    for number, (points, own, _, _, origin) in enumerate(surfaces):
         part = slice(ends[number], ends[number + 1])
-        mesh = plain_mesh(names[number], points - origin, own)
+        faces = slice(face_ends[number], face_ends[number + 1])
+        at = face_corners[corner_ends[number] : corner_ends[number + 1]]
+        mine = at - 3 * ends[number]  # among the corners of this surface's triangles
+
+        def per_corner(values):
+            return numpy.ascontiguousarray(values[part].reshape(3 * len(own), -1)[mine], numpy.float32)
+
+        mesh = _mesh(names[number], points - origin, own.ravel()[mine], sizes[faces])
         for slot in slots:
             mesh.materials.append(slot)
-        mesh.polygons.foreach_set("material_index", material[part])
-        mesh.polygons.foreach_set("use_smooth", smooth[part])
+        mesh.polygons.foreach_set("material_index", material[firsts[faces]])
+        mesh.polygons.foreach_set("use_smooth", smooth[firsts[faces]])
         for layer, values in uvs:
-            mesh.uv_layers.new(name=layer.name, do_init=False).data.foreach_set("uv", values[part].astype(numpy.float32).ravel())
+            mesh.uv_layers.new(name=layer.name, do_init=False).data.foreach_set("uv", per_corner(values).ravel())
         if not uvs and inner:
-            mesh.uv_layers.new(name="UVMap", do_init=False).data.foreach_set("uv", own_tile.astype(numpy.float32).ravel())
+            mesh.uv_layers.new(name="UVMap", do_init=False).data.foreach_set("uv", per_corner(tile).ravel())
         for layer, values in colors:
-            _add_colors(mesh, layer, values[part], own, outer[part])
+            _add_colors(mesh, layer, values[part], own, outer[part], per_corner(values))
         _set_active(mesh, source)
         if inner or source.custom_normals:
             if hasattr(mesh, "use_auto_smooth"):  # before Blender 4.1, which always shows custom normals
                 mesh.use_auto_smooth = True
-            mesh.normals_split_custom_set(normal[part].reshape(-1, 3).tolist())
+            mesh.normals_split_custom_set(per_corner(normal).tolist())
         mesh.update()
         meshes.append(mesh)
     return meshes
 
 
-def _add_colors(mesh, layer, values, triangles, outer):
+def _add_colors(mesh, layer, values, triangles, outer, at_corners_of_faces):
     data = mesh.color_attributes.new(layer.name, layer.kind, layer.domain).data
     if layer.domain == "POINT":  # on a border the skin's colour wins
         values, at_corners = numpy.tile(GREY, (len(mesh.vertices), 1)), values
         values[triangles[outer]] = at_corners[outer]
+    else:
+        values = at_corners_of_faces
     data.foreach_set("color", values.astype(numpy.float32).ravel())
 
 

@@ -5,6 +5,7 @@ import dataclasses
 import mathutils
 import numpy
 
+from . import arrays
 from .backend import Model, Refused
 
 TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -33,6 +34,8 @@ class Source:
     model: Model
     material: numpy.ndarray  # (m,), into materials
     smooth: numpy.ndarray  # (m,)
+    polygon: numpy.ndarray  # (m,): the face that each triangle is of
+    loop: numpy.ndarray  # (m, 3): which corner of its face each corner of a triangle is, from 0, in the order of the face
     normals: numpy.ndarray  # (m, 3, 3)
     custom_normals: bool
     uvs: list
@@ -95,6 +98,8 @@ def _arrays(found, evaluated, mesh):
     triangles = _get(mesh.loop_triangles, "vertices", (count, 3), numpy.int32)
     corners = _get(mesh.loop_triangles, "loops", (count, 3), numpy.int32)
     polygon = _get(mesh.loop_triangles, "polygon_index", count, numpy.int32)
+    begin = _get(mesh.polygons, "loop_start", len(mesh.polygons), numpy.int32)[polygon]
+    loop = corners - begin[:, None]
     smooth = _get(mesh.polygons, "use_smooth", len(mesh.polygons), bool)[polygon]
     material = _get(mesh.polygons, "material_index", len(mesh.polygons), numpy.int32)[polygon]
     normals = _corner_normals(mesh)
@@ -105,7 +110,7 @@ def _arrays(found, evaluated, mesh):
         normals /= numpy.maximum(numpy.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
         place, size = scale @ place, numpy.abs(scale @ size)
         if numpy.linalg.det(scale) < 0:  # mirrored
-            triangles, corners = triangles[:, ::-1], corners[:, ::-1]
+            triangles, corners, loop = triangles[:, ::-1], corners[:, ::-1], _turned(loop, polygon)[:, ::-1]
     colors = []
     for layer in mesh.color_attributes:
         at = triangles if layer.domain == "POINT" else corners
@@ -125,6 +130,8 @@ def _arrays(found, evaluated, mesh):
         model=Model(numpy.ascontiguousarray(vertices[used]), numpy.ascontiguousarray(numbers.reshape(-1, 3), dtype=numpy.int32)),
         material=material,
         smooth=smooth,
+        polygon=polygon,
+        loop=loop,
         normals=normals[corners],
         custom_normals=mesh.has_custom_normals,
         uvs=uvs,
@@ -138,6 +145,11 @@ def _arrays(found, evaluated, mesh):
         animated=_is_animated(found),
         left_out=_left_out(found, mesh),
     )
+
+
+def _turned(loop, polygon):
+    """Corners of faces in the opposite order."""
+    return arrays.sides(polygon, loop)[polygon][:, None] - 1 - loop
 
 
 def _is_animated(found):
@@ -170,5 +182,6 @@ def without_scale(own, vertices, triangles):
     normals = own.normals[:, order] @ own.scale
     normals /= numpy.maximum(numpy.linalg.norm(normals, axis=-1, keepdims=True), 1e-30)
     model = Model(own.model.vertices @ inverse, own.model.triangles[:, order])
-    local = dataclasses.replace(own, model=model, normals=normals, uvs=turned(own.uvs), colors=turned(own.colors))
+    loop = own.loop if order.step == 1 else _turned(own.loop, own.polygon)[:, order]
+    local = dataclasses.replace(own, model=model, loop=loop, normals=normals, uvs=turned(own.uvs), colors=turned(own.colors))
     return local, vertices @ inverse, triangles[:, order]

@@ -6,6 +6,7 @@
 // then the point that sticks out most of the hull so far.
 #include "geometry/convex_hull.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -58,6 +59,34 @@ class Hull {
     std::vector<Triangle> result;
     for (const Facet& f : facets_) result.push_back(f.v);
     return result;
+  }
+
+  bool is_complete() const {
+    return std::all_of(facets_.begin(), facets_.end(), [](const Facet& f) { return f.farthest == ~0u; });
+  }
+
+  // Corners, each moved so that its facets go outwards by half of what sticks out of them, in the
+  // least squares. The weight of a short way, relative to that of the facets, decides where the
+  // facets leave a direction free: along an edge between two walls, or within one wall.
+  std::vector<Vec3> moved_corners() const {
+    constexpr double short_way = 1e-2;  // facets that bend by 0.1 radian still decide about a direction
+    struct Fit {
+      Mat3 normals = Mat3::Zero();
+      Vec3 wanted = Vec3::Zero();
+    };
+    std::map<std::uint32_t, Fit> fits;
+    for (const Facet& f : facets_)
+      for (const auto v : f.v) {
+        Fit& fit = fits[v];
+        fit.normals += f.normal * f.normal.transpose();
+        fit.wanted += 0.5 * std::max(0.0, f.distance) * f.normal;
+      }
+    std::vector<Vec3> corners;
+    for (const auto& [v, fit] : fits) {
+      const Mat3 regular = fit.normals + short_way * fit.normals.trace() * Mat3::Identity();
+      corners.push_back(points_[v] + regular.ldlt().solve(fit.wanted));
+    }
+    return corners;
   }
 
  private:
@@ -146,26 +175,54 @@ std::optional<std::uint32_t> farthest(std::span<const Vec3> points, const Measur
   return best;
 }
 
+// Quickhull with at most max_corners corners; none if all points are coplanar.
+std::optional<Hull> grown_hull(std::span<const Vec3> points, std::size_t max_corners) {
+  if (points.size() < 4) return std::nullopt;
+  const Vec3& o = points[0];
+  const auto b = farthest(points, [&](const Vec3& p) { return (p - o).norm(); });
+  if (!b) return std::nullopt;
+  const auto c = farthest(points, [&](const Vec3& p) { return (points[*b] - o).cross(p - o).norm(); });
+  if (!c || collinear(o, points[*b], points[*c])) return std::nullopt;
+  const Vec3 normal = (points[*b] - o).cross(points[*c] - o);
+  const auto d = farthest(points, [&](const Vec3& p) { return std::abs(normal.dot(p - o)); });
+  if (!d) return std::nullopt;
+  const int side = orient3d(o, points[*b], points[*c], points[*d]);
+  if (side == 0) return std::nullopt;
+  const bool complete = max_corners >= points.size();
+  std::optional<Hull> hull(std::in_place, points, side < 0 ? Triangle{0, *b, *c} : Triangle{0, *c, *b}, *d,
+                           complete ? Assignment::first_facet : Assignment::farthest_facet);
+  while (hull->corner_count() < max_corners && hull->grow()) {
+  }
+  return hull;
+}
+
+// Triangles of points with the corners that they use.
+ConvexPolyhedron compact(std::span<const Vec3> points, std::vector<Triangle> triangles) {
+  ConvexPolyhedron result;
+  std::map<std::uint32_t, std::uint32_t> index;  // point → corner
+  for (Triangle& t : triangles)
+    for (auto& v : t) {
+      const auto [entry, is_new] = index.try_emplace(v, static_cast<std::uint32_t>(result.corners.size()));
+      if (is_new) result.corners.push_back(points[v]);
+      v = entry->second;
+    }
+  result.triangles = std::move(triangles);
+  return result;
+}
+
 }  // namespace
 
 std::vector<Triangle> convex_hull(std::span<const Vec3> points, std::size_t max_corners) {
-  if (points.size() < 4) return {};
-  const Vec3& o = points[0];
-  const auto b = farthest(points, [&](const Vec3& p) { return (p - o).norm(); });
-  if (!b) return {};
-  const auto c = farthest(points, [&](const Vec3& p) { return (points[*b] - o).cross(p - o).norm(); });
-  if (!c || collinear(o, points[*b], points[*c])) return {};
-  const Vec3 normal = (points[*b] - o).cross(points[*c] - o);
-  const auto d = farthest(points, [&](const Vec3& p) { return std::abs(normal.dot(p - o)); });
-  if (!d) return {};
-  const int side = orient3d(o, points[*b], points[*c], points[*d]);
-  if (side == 0) return {};
-  const bool complete = max_corners >= points.size();
-  Hull hull(points, side < 0 ? Triangle{0, *b, *c} : Triangle{0, *c, *b}, *d,
-            complete ? Assignment::first_facet : Assignment::farthest_facet);
-  while (hull.corner_count() < max_corners && hull.grow()) {
-  }
-  return hull.triangles();
+  const auto hull = grown_hull(points, max_corners);
+  return hull ? hull->triangles() : std::vector<Triangle>();
+}
+
+ConvexPolyhedron fitted_hull(std::span<const Vec3> points, std::size_t max_corners) {
+  const auto hull = grown_hull(points, max_corners);
+  if (!hull) return {};
+  if (hull->is_complete()) return compact(points, hull->triangles());
+  const std::vector<Vec3> corners = hull->moved_corners();
+  return compact(corners, convex_hull(corners));
 }
 
 }  // namespace geo

@@ -9,6 +9,7 @@
 #include "io/glb_physics.h"
 #include "io/gltf_materials.h"
 #include "io/piece_json.h"
+#include "io/preview_material.h"
 #include "kerf/error.h"
 #include "kerf/export.h"
 
@@ -143,10 +144,12 @@ class GlbScene {
     next_material_ = names.size();
   }
 
-  std::size_t material(const std::string& name) {
+  // Without a library: grey, or white where corners have colours, which multiply.
+  std::size_t material(const std::string& name, bool colored) {
     const auto [entry, fresh] = materials_.try_emplace(name, next_material_);
     next_material_ += fresh;
-    const Json color = name == crack_group ? Json::array({0.42, 0.36, 0.31, 1.0}) : Json::array({0.8, 0.8, 0.8, 1.0});
+    const Color base = colored ? Color(Color::Ones()) : plain_material(name).base;
+    const Json color = Json::array({base[0], base[1], base[2], base[3]});
     if (fresh)
       glb_.json["materials"].push_back(
           {{"name", name},
@@ -161,7 +164,8 @@ class GlbScene {
     Json primitives = Json::array();
     for (std::int32_t g = 0; g < std::int32_t(a.group_names.size()); ++g)
       if (std::find(a.group.begin(), a.group.end(), g) != a.group.end())
-        primitives.push_back(primitive(glb_, chunk, normals, g, material(a.group_names[std::size_t(g)])));
+        primitives.push_back(
+            primitive(glb_, chunk, normals, g, material(a.group_names[std::size_t(g)], !a.color.empty())));
     Json node = {{"name", labels_.names[p]},
                  {"translation", json_row(chunk.centroid - origin_above(0, p))},
                  {"mesh", glb_.mesh(primitives, labels_.names[p])},

@@ -194,7 +194,9 @@ void unpack_colors(Columns& columns, const std::vector<PcdField>& fields) {
 
 Columns pcd_text(const std::string& bytes, const PcdScan& scan, const std::string& name) {
   Columns columns;
-  LineReader lines(std::string_view(bytes).substr(scan.begin), name + " (data)", 0);
+  LineReader lines(bytes, name, 0);
+  for (std::vector<std::string_view> header; lines.position() < scan.begin && lines.next(header);) {
+  }
   std::vector<std::string_view> words;
   for (std::size_t i = 0; i < scan.points; ++i) {
     if (!lines.next(words)) throw InputError(name + ": ends before its last point; the file is truncated");

@@ -95,7 +95,7 @@ class PreviewReader {
     lose_extensions(use);
     const auto source = document_.index(description, "source");
     if (!source) {
-      result_.lost.insert("textures in other formats than PNG and JPEG");
+      result_.lost.insert(lost_images);
       return result;
     }
     result.image = image(*source);
@@ -132,7 +132,7 @@ class PreviewReader {
         view ? std::string(document_.view(*view)) : document_.at_uri(GltfDocument::text(description, "uri"));
     const std::string type = image_type(bytes);
     if (type != "image/png" && type != "image/jpeg") {
-      result_.lost.insert("textures in other formats than PNG and JPEG");
+      result_.lost.insert(lost_images);
       return at->second = TextureUse::none;
     }
     const std::string ending = type == "image/png" ? ".png" : ".jpg";

@@ -59,6 +59,9 @@ struct PreviewImage {
   std::string bytes;
 };
 
+/// The entry of PreviewMaterials::lost for images that are neither PNG nor JPEG.
+inline constexpr const char* lost_images = "textures in other formats than PNG and JPEG";
+
 /// The materials of a library.
 struct PreviewMaterials {
   std::vector<PreviewMaterial> materials;

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
@@ -18,16 +17,10 @@ namespace geo {
 namespace {
 
 TriangleMesh hull_of(const std::vector<Vec3>& points, std::size_t max_vertices) {
+  ConvexPolyhedron fitted = fitted_hull(points, max_vertices);
   TriangleMesh hull;
-  std::map<std::uint32_t, std::uint32_t> index;  // point → vertex of the hull
-  for (Triangle t : convex_hull(points, max_vertices)) {
-    for (auto& v : t) {
-      const auto [entry, is_new] = index.try_emplace(v, static_cast<std::uint32_t>(hull.vertices.size()));
-      if (is_new) hull.vertices.push_back(points[v]);
-      v = entry->second;
-    }
-    hull.triangles.push_back(t);
-  }
+  hull.vertices = std::move(fitted.corners);
+  hull.triangles = std::move(fitted.triangles);
   return hull;
 }
 

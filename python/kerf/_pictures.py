@@ -12,7 +12,7 @@ class _Content:
     def __init__(self):
         self.surfaces, self.obstacles = [], []
         self.positions = self.spacing = self.field = self.graph = None
-        self.color = "patch"
+        self.color = "model"
 
 
 def _is(x, name):
@@ -93,7 +93,7 @@ def _values_of_surface(x, color):
     """One number per vertex for an argument `color` that is no name."""
     if isinstance(color, str):
         if color != "stress" or not _is(x, "Simulation"):
-            raise _refuse("color", "'patch', 'piece', 'plain', for a Simulation also 'stress', or one number per vertex")
+            raise _refuse("color", "'model', 'patch', 'piece', 'plain', for a Simulation also 'stress', or one number per vertex")
         return _on_surface(x.body, x.stress)
     return color
 
@@ -126,7 +126,7 @@ def picture(x, *, size=(960, 720), camera=(30.0, 22.0), zoom=1.0, up="z", color=
     size: width and height in pixels. camera: azimuth about the vertical axis and elevation, in degrees. zoom: 1 shows
     everything. up: the model's vertical axis, "z" or "y".
 
-    color: "patch" (skin, and the two sides of cracks), "piece", "plain"; of a Simulation "stress" (von Mises, Pa); or one number
+    color: "model" (its materials and colours, where it has them), "patch" (skin, and the two sides of cracks), "piece", "plain"; of a Simulation "stress" (von Mises, Pa); or one number
     per vertex of the surface, shown by a scale from dark blue over green to yellow. color_range: lowest and highest number of
     the scale. skin: colour of the skin, "#rrggbb". opacity: of the surface, 0 to 1; with sheets, that of the skin alone.
     seams: draw where cracks meet the skin, green, and where they end, red. wire: draw the edges of triangles.
@@ -143,7 +143,7 @@ def picture(x, *, size=(960, 720), camera=(30.0, 22.0), zoom=1.0, up="z", color=
 
     content = _content_of(x)
     color = content.color if color is None else color
-    named = isinstance(color, str) and color in ("patch", "piece", "plain")
+    named = isinstance(color, str) and color in ("model", "patch", "piece", "plain")
     drawn_nodes = {}
     nodes, edges = _flag("nodes", nodes), _flag("edges", edges)
     if (nodes or edges or not content.surfaces) and content.positions is not None:

@@ -26,6 +26,7 @@ const std::vector<std::string> modules = [] {
 
 // The module of each public header: the lowest one that defines functions of it.
 const std::map<std::string, std::string> public_headers{
+    {"appearance", "io"},
     {"body", "body"},
     {"body_file", "io"},
     {"check", "surface"},

@@ -102,7 +102,7 @@ def closed(piece):
     assert all(edge.is_manifold and edge.is_contiguous for edge in mesh.edges), piece.name
     total = mesh.calc_volume(signed=True)
     assert total > 0, piece.name
-    corners = numpy.array([[vertex.co for vertex in face.verts] for face in mesh.faces], float)
+    corners = numpy.array([[loop.vert.co for loop in triangle] for triangle in mesh.calc_loop_triangles()], float)
     part = numpy.einsum("ij,ij->i", corners[:, 0], numpy.cross(corners[:, 1], corners[:, 2])) / 6
     centroid = (part[:, None] * corners.sum(1) / 4).sum(0) / part.sum()
     assert numpy.abs(centroid).max() < 1e-4 * total ** (1 / 3), (piece.name, centroid)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -111,6 +112,57 @@ TEST_CASE("points stick out of limited hulls by little", "[hull]") {
     CHECK(stick_out(points, convex_hull(points, 64)) < 5 / 3. * 0.011);
     CHECK(stick_out(points, convex_hull(points, 32)) < 5 / 3. * 0.0215);
   }
+}
+
+// The best inscribed hulls leave the caps above. One whose faces lie half way in them leaves half.
+TEST_CASE("a fitted hull is convex, and as near to its points as the best inscribed one", "[hull]") {
+  const auto [first, count] = seeds(60);
+  for (int c = 0; c < count; ++c) {
+    const auto seed = first + static_cast<std::uint64_t>(c);
+    INFO("seed " << seed);
+    Random random(seed);
+    const auto points = rounded_piece(random);
+    const auto whole = convex_hull(points);
+    Vec3 lo = points[0], hi = points[0];
+    for (const Vec3& p : points) {
+      lo = lo.cwiseMin(p);
+      hi = hi.cwiseMax(p);
+    }
+    for (const auto& [corners, most] : {std::pair<std::size_t, double>{64, 0.011}, {32, 0.0215}}) {
+      const ConvexPolyhedron fitted = fitted_hull(points, corners);
+      CHECK(fitted.corners.size() <= corners);
+      check_hull(fitted.corners, fitted.triangles, true);
+      double out = 0, beyond = 0;
+      for (const auto& [a, b, d] : fitted.triangles) {
+        const Vec3& o = fitted.corners[a];
+        const Vec3 normal = (fitted.corners[b] - o).cross(fitted.corners[d] - o).normalized();
+        for (const Vec3& p : points) out = std::max(out, normal.dot(p - o));
+      }
+      for (const auto& [a, b, d] : whole) {
+        const Vec3 normal = (points[b] - points[a]).cross(points[d] - points[a]).normalized();
+        for (const Vec3& p : fitted.corners) beyond = std::max(beyond, normal.dot(p - points[a]));
+      }
+      CHECK(out < most * (hi - lo).norm());
+      CHECK(beyond < most * (hi - lo).norm());
+    }
+  }
+}
+
+TEST_CASE("a fitted hull within its number of corners is exact", "[hull]") {
+  const auto [first, count] = seeds(20);
+  for (int c = 0; c < count; ++c) {
+    const auto seed = first + static_cast<std::uint64_t>(c);
+    INFO("seed " << seed);
+    Random random(seed);
+    std::vector<Vec3> points(8 + random.below(40));
+    for (Vec3& p : points) p = random.uniform() * random.direction();
+    const auto whole = convex_hull(points);
+    const ConvexPolyhedron fitted = fitted_hull(points, std::max(points.size() - 1, whole.size() / 2 + 2));
+    REQUIRE(fitted.triangles.size() == whole.size());
+    for (const Vec3& p : fitted.corners) CHECK(std::find(points.begin(), points.end(), p) != points.end());
+    check_hull(fitted.corners, fitted.triangles, true);
+  }
+  CHECK(fitted_hull(std::vector<Vec3>(7, Vec3(1, 2, 3)), 8).triangles.empty());
 }
 
 TEST_CASE("coplanar points have no hull", "[hull]") {

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/fuzz.h"
 #include "io/preview_material.h"
+#include "kerf/appearance.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
 #include "kerf/export.h"
@@ -282,4 +284,64 @@ TEST_CASE("STL and OFF return the triangles", "[materials]") {
   REQUIRE(stl.triangles.size() == ball.triangles.size());
   CHECK(stl.vertices.size() == ball.vertices.size());
   CHECK(signed_volume(stl) == Approx(signed_volume(ball)).epsilon(1e-6));
+}
+
+TEST_CASE("base colours are factors, images and their places", "[materials]") {
+  const Folder folder;
+  write_tree(folder);
+  Attributes a = read_surface(folder.at("tree.obj")).mesh.attributes;
+  a.group_names = {"old leaf", "bark", crack_group, "unknown"};
+  const BaseColors colors = base_colors(a);
+  REQUIRE(colors.of_group.size() == 4);
+  CHECK(colors.of_group[0].factor == Color(0, 1, 0, 1));
+  CHECK(colors.of_group[0].image == BaseColor::no_image);
+  const BaseColor& bark = colors.of_group[1];
+  CHECK(bark.factor == Color(0.25, 0.5, 0.75, 0.5));
+  REQUIRE(colors.images.size() == 1);
+  CHECK(bark.image == 0);
+  CHECK(colors.images[0] == png(2, "bark"));
+  CHECK(bark.uv_set == 0);
+  CHECK(bark.wrap == std::array<TextureWrap, 2>{TextureWrap::clamp, TextureWrap::clamp});
+  // As the .mtl says it: a coordinate is multiplied, then moved.
+  CHECK((bark.placement * Vec2(0.5, 0.25) + bark.offset - Vec2(1.25, 1.25)).norm() < 1e-12);
+  CHECK(colors.of_group[2].factor == Color(0.42, 0.36, 0.31, 1));
+  CHECK(colors.of_group[3].factor == Color(0.8, 0.8, 0.8, 1));
+  CHECK(colors.complete);
+  // Colours of corners are all that is known of a group without a material.
+  a.color.resize(a.group.size());
+  CHECK(base_colors(a).of_group[1].factor == bark.factor);
+  CHECK(base_colors(a).of_group[2].factor == Color(1, 1, 1, 1));
+  CHECK(base_colors({}).of_group.at(0).factor == Color(0.8, 0.8, 0.8, 1));
+}
+
+TEST_CASE("damaged .mtl files give what is understood of them", "[materials][fuzz]") {
+  const Folder folder;
+  write_tree(folder);
+  const std::string obj = obj_with("mtllib damaged.mtl\n"), name = folder.at("tree.obj");
+  const std::vector<std::string> files{
+      tree_mtl, "newmtl bark\nKd 0.5\nmap_Kd -t 1 2 3 -mm 0 1 -cc on surface.png\nmap_Bump -bm 2 bumps.png\nTr 0.25\n",
+      "# Blender\r\nnewmtl old leaf\r\nKa 1 1 1\r\nKd spectral a.rfl 1\r\nKe xyz 1 2 3\r\nd -halo 0.5\r\nillum "
+      "2\r\nmap_Ke "
+      "textures/big bark.png\r\n"};
+  fuzz::campaign(
+      "mtl", 1000,
+      [&](const auto& bytes, const auto&) -> fuzz::Use {
+        folder.write("damaged.mtl", bytes);
+        return [mesh = parse_surface(obj, name).mesh] {
+          const Attributes& a = mesh.attributes;
+          for (const BaseColor& color : base_colors(a).of_group)
+            if (!color.factor.allFinite() || !color.placement.allFinite() || !color.offset.allFinite())
+              throw std::logic_error("a base colour that is not finite");
+          mtl_files(a.group_names, a.library, "x_");
+          image_files(a.library, "x_");
+          const std::string ply = bytes_of([&](auto& out) { write_ply(out, mesh); });
+          if (parse_surface(ply, "again.ply").mesh.attributes.library != a.library)
+            throw std::logic_error("another library after writing and reading");
+        };
+      },
+      [files](Random& random) {
+        const std::string& file = files[random.below(static_cast<std::uint32_t>(files.size()))];
+        return Mutator(random).damaged(file, files);
+      },
+      fuzz::Refusals::none);
 }

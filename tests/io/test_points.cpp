@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "io/fuzz.h"
 #include "kerf/error.h"
 #include "kerf/files.h"
 #include "samples.h"
@@ -128,4 +129,35 @@ TEST_CASE("any damage to a scan gives an error or a cloud", "[points]") {
     }
     CHECK(refused > 100);
   }
+}
+
+TEST_CASE("damaged scans are read or refused", "[points][fuzz]") {
+  const auto cloud = some_points();
+  std::vector<std::string> files = sample_nodes_files(cut_body().nodes);  // PCD and PLY
+  for (const int how : {0, 1, 2}) files.push_back(pcd_of(cloud, how));
+  std::string numbers = "400\n", colors, all;
+  for (const auto& p : cloud) {
+    const std::string place = std::to_string(p.x) + ' ' + std::to_string(p.y) + ' ' + std::to_string(p.z);
+    const std::string color = std::to_string(p.r) + ' ' + std::to_string(p.g) + ' ' + std::to_string(p.b);
+    numbers += place + '\n';
+    colors += place + ' ' + color + '\n';
+    all += place + " 0 1 0 " + color + '\n';
+  }
+  std::replace(colors.begin(), colors.end(), ' ', ',');
+  files.insert(files.end(), {numbers, colors, all});
+  fuzz::campaign(
+      "scan", 3000,
+      [](const auto& bytes, const auto& name) -> fuzz::Use {
+        return [scan = parse_points(bytes, name)] {
+          for (const Vec3& p : scan.position)
+            if (!p.allFinite()) throw std::logic_error("a position that is not finite");
+          for (const std::size_t size : {scan.normal.size(), scan.color.size()})
+            if (size != 0 && size != scan.position.size())
+              throw std::logic_error("fewer normals or colours than points");
+        };
+      },
+      [files](Random& random) {
+        const std::string& file = files[random.below(static_cast<std::uint32_t>(files.size()))];
+        return Mutator(random).damaged(file, files);
+      });
 }

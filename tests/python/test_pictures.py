@@ -12,8 +12,8 @@ import values
 SIZE = (96, 72)
 
 
-def cube():
-    return kerf.Solid(*values.cube())
+def cube(**options):
+    return kerf.Solid(*values.cube(), **options)
 
 
 def red(picture):
@@ -45,6 +45,20 @@ class Pictures(unittest.TestCase):
         low = kerf.picture(solid, size=SIZE, samples=1, color=np.zeros(8), color_range=(0, 1), ground=False)
         high = kerf.picture(solid, size=SIZE, samples=1, color=np.ones(8), color_range=(0, 1), ground=False)
         self.assertGreater(high[36, 48, 1], low[36, 48, 1] + 40)  # yellow over dark blue
+
+    def test_the_colors_of_a_model(self):
+        green = cube(colors=np.tile([0.0, 1.0, 0.0, 1.0], (8, 1)))
+
+        def is_green(picture):
+            r, g, b = picture[36, 48].astype(int)
+            return g > 2 * max(r, b)
+
+        self.assertTrue(is_green(kerf.picture(green, size=SIZE, samples=1)))
+        self.assertFalse(is_green(kerf.picture(green, size=SIZE, samples=1, color="patch")))
+        self.assertFalse(is_green(kerf.picture(green, size=SIZE, samples=1, color=np.zeros(8))))
+        pieces = green.crack(kerf.score(green, "planes", pieces=2, axis="z", jagged=0)).pieces()
+        self.assertTrue(is_green(kerf.picture(pieces, size=SIZE, samples=1, color="model")))
+        self.assertFalse(is_green(kerf.picture(pieces, size=SIZE, samples=1)))
 
     def test_pieces(self):
         solid = cube()

@@ -4,30 +4,20 @@
 #include <iostream>
 
 #include "cases.h"
-#include "invariants/models.h"
 #include "kerf/check.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/pieces.h"
 #include "kerf/score.h"
+#include "score/models.h"
 
 using namespace geo;
 
 namespace {
 
-// Small models first, which the suite uses; those named by lower-case files are scans.
-const std::vector<std::string> models{
-    "joint",   "apple", "cactus",       "letter K", "helmet", "rotor", "polyp",       "spool", "plate",   "hand",
-    "pumpkin", "knot1", "couplingdown", "elephant", "dino",   "femur", "triceratops", "homer", "retinal", "bear"};
+using score_models::model_of;
+const auto& models = score_models::names;
 const std::vector<std::string> patterns{"voronoi", "planes", "wood", "bricks", "glass"};
-
-TriangleMesh model_of(const std::string& name) {
-  if (name == "apple") return make_apple(10);
-  if (name == "letter K") return make_letter('K', 0.25, 16);
-  if (name == "polyp") return make_polyp(10);
-  if (name == "plate") return make_block({2, 1, 0.12}, 0.1);
-  return invariants::model(name);
-}
 
 double area_of(const TriangleMesh& mesh, std::size_t t) {
   const auto& c = mesh.triangles[t];

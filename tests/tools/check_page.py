@@ -188,6 +188,21 @@ def run(page):
     check(f"{page.name}: the button still says pause", b.run('$("play").textContent') == "▶")
 
 
+# The two images of base colours, which are repeated and moved, and the cracks' own material.
+def painted(page):
+    counts = page.b.run("""(() => { draw(); const gl = renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight, p = new Uint8Array(4 * w * h);
+      gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, p); let orange = 0, blue = 0, edges = 0;
+      for (let i = 0; i < p.length; i += 4) { const o = p[i] > 2 * p[i + 2], b = p[i + 2] > 1.7 * p[i]; orange += o, blue += b, edges += o && p[i + 6] > 1.2 * p[i + 4]; }
+      return [images.length, orange, blue, edges]; })()""")
+    check(f"{page.name}: {counts}", counts[0] == 2 and counts[1] > 5000 and counts[2] > 5000 and counts[3] > 300)
+    check(f"{page.name}: is not in the model's colours", page.state("color") == "model")
+    page.changes("skin and sheets", lambda: choose(page, "color", "patch"), lambda: page.b.run('set("color", "model")'))
+    page.changes("explode", lambda: page.click("explode", 0.6), lambda: page.click("explode", 0.005))
+    page.changes("skin", lambda: page.click("skin", 0.3))
+    page.changes("triangles", lambda: page.click("wire"))
+    page.click("clip")
+
+
 browser = Browser(900, 620)
 try:
     folder = sys.argv[1]
@@ -202,6 +217,11 @@ try:
     page = Page(browser, os.path.join(folder, "pieces.html"))
     page.changes("explode", lambda: page.click("explode", 0.6), lambda: page.click("explode", 0.005))
     page.changes("key x", lambda: page.key("x"))
+    page.done()
+    page = Page(browser, os.path.join(folder, "painted.html"))
+    painted(page), page.done()
+    page = Page(browser, os.path.join(folder, "bare.html"))
+    check("bare.html: has materials", page.state("color") == "patch" and browser.run('[...$("color").options].every((o) => o.value !== "model") && images.length === 0'))
     page.done()
     page = Page(browser, os.path.join(folder, "body.html#nodes=true&skin=0.25&selected=7&field=neighbors&azimuth=1"))
     check(f"{page.name}: the address is not followed", page.state("nodes") and page.state("skin") == 0.25 and page.state("selected") == 7 and browser.run("view.azimuth") == 1)

@@ -47,6 +47,13 @@ keys = [[0.0,1.013,0.007,1.3,0,0,1,2],[0.2,1.013,0.011,-0.7,0,0,1,3]]
 T
 kerf-sim -q s.toml -o run
 kerf-view run -o run.html
+python3 "$here/../assets/painted.py"
+kerf-model front --around painted.glb -o painted.front
+kerf-crack painted.glb --front painted.front -o painted.ply
+kerf-view painted.ply -o painted.html
+kerf-view painted.ply --color patch -o bare.html
+grep -q 'data:image/png' painted.html || { echo "FAILED: painted.html has no image"; exit 1; }
+grep -q 'data:image/png' bare.html && { echo "FAILED: --color patch leaves images in the page"; exit 1; }
 kerf-model sphere --frequency 160 -o big.ply
 kerf-view big.ply --megabytes 1.4 -o coarse.html 2>said.txt
 grep -q decimated said.txt || { echo "FAILED: no notice of decimation"; exit 1; }

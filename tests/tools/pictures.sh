@@ -81,6 +81,47 @@ draw lying.obj --up y --cut-away 0,0,1,0.1 -o standing.png
 draw cube1.obj --cut-away 0,-1,0,0.1 -o cut.png
 cmp cut.png standing.png || fail "--up y moves the cut-away"
 
+# A model's images and colours: those of a cube whose left half is red and right half green, told by the pixels.
+python3 - <<'P'
+import struct, sys, zlib
+def png(width, pixels):
+    rows = b"".join(b"\0" + bytes(c for p in pixels[i:i + width] for c in p) for i in range(0, len(pixels), width))
+    parts = [(b"IHDR", struct.pack(">IIBBBBB", width, len(pixels) // width, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b"")]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(struct.pack(">I", len(d)) + n + d + struct.pack(">I", zlib.crc32(n + d)) for n, d in parts)
+# The upper row is red and green, the lower one blue twice: v points upwards.
+open("halves.png", "wb").write(png(2, [(255, 0, 0), (0, 255, 0), (0, 0, 255), (0, 0, 255)]))
+open("broken.png", "wb").write(png(2, [(255, 0, 0)] * 4)[:60])
+P
+{ echo "mtllib halves.mtl"; grep '^v' cube1.obj
+  printf 'vt 0.25 0.75\nvt 0.75 0.75\nvt 0.25 0.25\nusemtl red\nf 1/1 3/1 4/1 2/1\nf 5/1 6/1 8/1 7/1\nf 1/1 2/1 6/1 5/1\nusemtl green\nf 2/2 4/2 8/2 6/2\nf 4/3 3/3 7/3 8/3\nf 3/2 1/2 5/2 7/2\n'; } >halves.obj
+printf 'newmtl red\nmap_Kd -clamp on halves.png\nnewmtl green\nmap_Kd -clamp on halves.png\n' >halves.mtl
+sed 's/halves/broken/' halves.mtl >broken.mtl && sed 's/halves/broken/' halves.obj >broken.obj
+# told PICTURE: the colour in the middle of it: r, g, b where one channel is the strongest by far
+told() {
+  ffmpeg -v error -i "$1" -f rawvideo -pix_fmt rgb24 -y seen.rgb
+  python3 -c 'd = open("seen.rgb", "rb").read(); p = d[3 * (96 * 36 + 48):][:3]; print("rgb"[p.index(max(p))] if max(p) > 2 * sorted(p)[1] else "-")'
+}
+for view in 0,0=r 90,0=g 180,0=b -90,0=g; do
+  draw halves.obj --camera "${view%=*}" --no-ground -o seen.png
+  [ "$(told seen.png)" = "${view#*=}" ] || fail "halves.obj from ${view%=*} is $(told seen.png)"
+done
+draw halves.obj --camera 90,0 --no-ground --color patch -o patch.png
+draw cube1.obj --camera 90,0 --no-ground -o plain.png
+cmp -s patch.png plain.png || fail "--color patch shows materials"
+awk '/^v/ { print $0, 0, 0, ($2 > 0 ? 1 : 0.5); next } { print }' cube1.obj >colored.obj
+draw colored.obj --camera 0,0 --no-ground -o seen.png
+[ "$(told seen.png)" = b ] || fail "colours of vertices are not drawn"
+refuses 65 "a texture cannot be read: .*; save the image again as PNG or JPEG" kerf-view broken.obj -o x.png
+draw broken.obj --color patch -o seen.png
+# Images that are neither PNG nor JPEG are told in a line, by pictures and pages.
+python3 "$(dirname "$(realpath "$0")")/../assets/painted.py"
+python3 -c 'd = bytearray(open("painted.glb", "rb").read()); i = d.index(b"\x89PNG"); d[i:i + 12] = b"RIFF____WEBP"; open("webp.glb", "wb").write(d)'
+for name in seen.png seen.html; do
+  kerf-view painted.glb --size 96x72 --samples 1 -o $name 2>said.txt && [ ! -s said.txt ] || fail "painted.glb: $(cat said.txt)"
+  kerf-view webp.glb --size 96x72 --samples 1 -o $name 2>said.txt || fail "webp.glb is not drawn"
+  [ "$(cat said.txt)" = "kerf-view: left out: images of materials in other formats than PNG and JPEG" ] || fail "webp.glb: $(cat said.txt)"
+done
+
 # Animations: as many frames as asked for, the same bytes again.
 draw whole.ply --explode 0.5 --frames 5 -o turn.webp
 draw whole.ply --explode 0.5 --frames 5 -j 1 -o again.webp

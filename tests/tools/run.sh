@@ -319,7 +319,14 @@ END
   ! kerf-pieces broken.ply -o pieces.usda 2>&1 | grep -q 'left out' || fail "pieces.usda leaves something out"
   grep -q 'UsdPreviewSurface' pieces.usda || fail "pieces.usda has no materials"
   printf '[body]\nmesh = "%s"\nspacing = 0.3\n[time]\nframes = 1\n' "$(realpath "$cases/gltf/prop.glb")" >prop.toml
-  kerf-sim prop.toml -o prop 2>&1 | grep -q 'prop.glb: left out: materials but their names' || fail "kerf-sim says nothing of materials"
+  # A run of one body keeps them in a file beside its frames, which pages and pieces of frames find.
+  kerf-sim prop.toml -o prop 2>&1 | grep -q 'left out' && fail "kerf-sim leaves materials out"
+  [ -s prop/materials.glb ] || fail "the run has no materials"
+  kerf-view -q prop -o prop.html && grep -q 'data:image/png' prop.html || fail "the page of a run has no image"
+  kerf-view -q prop --color patch -o bare.html && grep -q 'data:image/png' bare.html && fail "--color patch keeps images"
+  kerf-pieces -q prop -o frame.glb && grep -aq '"images"' frame.glb || fail "pieces of a frame have no image"
+  printf '[[body]]\nmesh = "%s"\nspacing = 0.3\n[[body]]\nmesh = "%s"\nspacing = 0.3\nposition = [5, 0, 0]\n[time]\nframes = 1\n' "$(realpath "$cases/gltf/prop.glb")" "$(realpath "$cases/gltf/prop.glb")" >two.toml
+  kerf-sim two.toml -o two 2>&1 | grep -q 'prop.glb: left out: materials but their names' || fail "kerf-sim says nothing of materials"
   # Units: a part of 40 mm weighs what it weighs.
   mass() { /usr/bin/python3 -c 'import json, sys; d = open(sys.argv[1], "rb").read(); n = int.from_bytes(d[12:16], "little"); print(*sorted("%.4g" % m["extensions"]["OMI_physics_body"]["motion"]["mass"] for m in json.loads(d[20:20 + n])["nodes"] if "motion" in m.get("extensions", {}).get("OMI_physics_body", {})))' "$1"; }
   awk '/^ *vertex/ { print "vertex", 40 * $2, 40 * $3, 40 * $4; next } { print }' "$cases/stl/ascii-lead.stl" >part.stl

@@ -22,6 +22,8 @@ std::vector<double> edge_lengths(const geo::TriangleMesh& mesh) {
   return lengths;
 }
 
+std::string corner(const geo::Vec3& p) { return list({tool::number(p.x()), tool::number(p.y()), tool::number(p.z())}); }
+
 }  // namespace
 
 std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& options, Report& report) {
@@ -46,8 +48,9 @@ std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& op
     } catch (const geo::InputError&) {
     }
   const double volume = geo::signed_volume(mesh);
-  const geo::Vec3 size =
-      mesh.vertices.empty() ? geo::Vec3(0, 0, 0) : geo::Vec3(geo::bounding_box(mesh).hi - geo::bounding_box(mesh).lo);
+  const geo::Box3 box =
+      mesh.vertices.empty() ? geo::Box3{geo::Vec3::Zero(), geo::Vec3::Zero()} : geo::bounding_box(mesh);
+  const geo::Vec3 size = box.hi - box.lo;
   report.headline = (sound ? "A closed surface: " : "A surface that is not closed or not sound: ") +
                     counted(mesh.triangles.size() - 2 * cracks, "triangle") + " of skin" +
                     (crack_count > 0 ? ", " + counted(static_cast<std::size_t>(crack_count), "crack") + " of " +
@@ -69,6 +72,8 @@ std::string report_surface(const geo::SurfaceFile& file, const ReportOptions& op
   report.add("self_intersections", result.self_intersections ? std::to_string(*result.self_intersections) : "null");
   report.add_number("volume", volume);
   report.add_number("area", geo::area(mesh));
+  report.add("low", corner(box.lo));
+  report.add("high", corner(box.hi));
   if (mesh.unit > 0) report.add_number("unit", mesh.unit);
   report.add("front_edges", front_edges);
   report.add("degenerate_faces", result.degenerate_faces);

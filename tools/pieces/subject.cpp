@@ -5,6 +5,7 @@
 
 #include <kerf/body_file.h>
 #include "model.h"
+#include "run_materials.h"
 #include "tool.h"
 
 namespace pieces {
@@ -68,6 +69,7 @@ Subject read_subject(const std::string& given, bool repair, const tool::Say& say
     return subject;
   }
   geo::SurfaceFile file = tool::parse_surface(bytes, path);
+  tool::add_run_materials(file.mesh, path);
   if (is_deformed(file.mesh)) {
     subject.moved = material_points(file.mesh, path);
     subject.moved.swap(file.mesh.vertices);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <kerf/mesh.h>
+#include "run_materials.h"
 
 namespace sim {
 
@@ -13,6 +14,7 @@ struct RunFolder {
   std::filesystem::path frames() const { return path / "frames"; }
   std::filesystem::path nodes() const { return path / "nodes"; }
   std::filesystem::path checkpoint() const { return path / "checkpoint.kerf"; }
+  std::filesystem::path materials() const { return path / tool::run_materials; }
   std::filesystem::path log() const { return path / "frames.jsonl"; }
   /// "frames/frame_0007.ply", relative to the folder.
   static std::string frame_name(int i);

@@ -45,23 +45,35 @@ geo::SceneOverrides parse_overrides(const std::vector<std::string>& settings) {
 }
 
 Setup read_setup(const std::string& path, const geo::SceneOverrides& overrides) {
-  Setup setup{geo::read_scene(path, overrides), {}, 0};
+  Setup setup{.scene = geo::read_scene(path, overrides), .models = {}};
   std::vector<geo::TriangleMesh> meshes;
   std::string hashes = std::to_string(setup.scene.fingerprint);
   for (const geo::SceneBody& body : setup.scene.bodies) {
     const std::string bytes = geo::read_all(body.mesh);
     meshes.push_back(tool::parse_solid(bytes, body.mesh).mesh);
     tool::require_whole(meshes.back(), body.mesh, "a scene begins with whole models");
-    tool::for_scene(meshes.back(), body.mesh, body.scale);
+    setup.materials = tool::for_scene(meshes.back(), body.mesh, body.scale);
+    if (setup.materials.glb) setup.with_materials.push_back(body.mesh);
     hashes += " " + std::to_string(geo::fingerprint(bytes));
   }
   setup.fingerprint = geo::fingerprint(hashes);
+  if (meshes.size() > 1) setup.materials = {};  // frames carry attributes of a single model only
   try {
     setup.models = geo::place_models(setup.scene, std::move(meshes));
   } catch (const geo::InputError& e) {
     throw geo::InputError(path + ": " + e.what());
   }
   return setup;
+}
+
+void tell_lost_materials(const Setup& setup, bool kept) {
+  if (kept && setup.materials.glb) return;
+  for (const std::string& path : setup.with_materials) {
+    geo::SurfaceFile about;
+    about.notes.push_back(std::string("left out: materials but their names, which ") +
+                          (kept ? "only runs of one body keep" : "are not shown"));
+    tool::say_notes(about, path);
+  }
 }
 
 void warn_of_large_models(const Setup& setup, const tool::Tool& t) {

@@ -71,6 +71,12 @@ void cut(Stage& stage, const Look& look) {
 
 }  // namespace
 
+Coloring coloring_of(const std::string& name) {
+  if (name == "piece") return Coloring::piece;
+  if (name == "plain") return Coloring::plain;
+  return name == "patch" ? Coloring::patch : Coloring::model;
+}
+
 Color parse_color(const std::string& text) {
   unsigned value = 0;
   char rest = 0;
@@ -101,6 +107,8 @@ Stage stage_of(const Subject& subject, const Look& look) {
   stage.section = look.section;
   stage.surface_opacity = look.opacity;
   stage.sheets_opaque = look.sheets && surface.patch.size() == surface.triangles.size() && look.opacity < 1;
+  if (look.coloring == Coloring::model) stage.paint = paint_of(surface);
+  const bool sheets = look.coloring == Coloring::model || look.coloring == Coloring::patch;
   const PieceMap pieces = pieces_of(surface);
   const Vec3 middle = geo::bounding_box(surface).center();
   const auto shift = [&](std::uint32_t piece) -> Vec3 { return look.explode * (pieces.center[piece] - middle); };
@@ -109,9 +117,9 @@ Stage stage_of(const Subject& subject, const Look& look) {
     const int patch = surface.patch.empty() ? 0 : surface.patch[t];
     Color color = look.skin;
     if (look.coloring == Coloring::piece) color = piece_color(pieces.of_row[surface.triangles[t][0]]);
-    if (look.coloring == Coloring::patch && patch != 0) color = patch > 0 ? sheet_plus : sheet_minus;
+    if (sheets && patch != 0) color = patch > 0 ? sheet_plus : sheet_minus;
     stage.triangle_colors.push_back(color);
-    if (look.coloring == Coloring::patch && patch != 0) color = patch > 0 ? sheet_minus : sheet_plus;
+    if (sheets && patch != 0) color = patch > 0 ? sheet_minus : sheet_plus;
     stage.back_colors.push_back(color);
   }
   std::vector<Vec3> position = subject.nodes.position;

@@ -16,10 +16,11 @@ struct RelativePlane {
   double offset = 0;
 };
 
-enum class Coloring { patch, piece, plain };
+/// `model`: as the model's materials and colours say, where it has them, else as `patch`.
+enum class Coloring { model, patch, piece, plain };
 
 struct Look {
-  Coloring coloring = Coloring::patch;
+  Coloring coloring = Coloring::model;
   Color skin{0.80f, 0.36f, 0.10f};
   bool nodes = false, edges = false, wire = false, section = true;
   std::string field = "radius";       ///< colours the nodes, see fields.h
@@ -38,6 +39,9 @@ struct Look {
     return nodes || edges || cut_edges || trees || node;
   }  ///< something within the surface is drawn
 };
+
+/// The colouring of this name: "model", "patch", "piece" or "plain".
+Coloring coloring_of(const std::string& name);
 
 /// "#rrggbb" as linear light. Throws geo::InputError.
 Color parse_color(const std::string& text);

@@ -11,6 +11,12 @@
 namespace view {
 namespace {
 
+std::uint32_t sixteen_bits(double x, double lo, double size) {
+  return size > 0 ? static_cast<std::uint32_t>(std::lround(65535 * std::clamp((x - lo) / size, 0.0, 1.0))) : 0;
+}
+
+}  // namespace
+
 std::string base64(const std::string& bytes) {
   constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -23,12 +29,6 @@ std::string base64(const std::string& bytes) {
   }
   return text;
 }
-
-std::uint32_t sixteen_bits(double x, double lo, double size) {
-  return size > 0 ? static_cast<std::uint32_t>(std::lround(65535 * std::clamp((x - lo) / size, 0.0, 1.0))) : 0;
-}
-
-}  // namespace
 
 void Pack::whole(const std::string& name, const std::vector<std::uint32_t>& values, int width, int columns,
                  const std::string& base) {

@@ -11,6 +11,9 @@
 
 namespace view {
 
+/// Bytes as base64 (RFC 4648).
+std::string base64(const std::string& bytes);
+
 class Pack {
  public:
   /// Adds integers of `width` bytes (1, 2, 4) in rows of `columns`. Differences are taken to the

@@ -7,13 +7,16 @@
 #include <filesystem>
 #include <functional>
 #include <numeric>
+#include <optional>
 
 #include <kerf/files.h>
+#include "run_materials.h"
 #include "version.h"
 #include "view/cut_edges.h"
 #include "view/fields.h"
 #include "view/moving_nodes.h"
 #include "view/pack.h"
+#include "view/page_paint.h"
 #include "view/page_template.h"
 #include "view/pieces.h"
 #include "view/shrink.h"
@@ -35,7 +38,8 @@ std::string counted(std::size_t n, const char* what) { return std::to_string(n) 
 
 class Writer {
  public:
-  Writer(const geo::Box3& box, const Budget& budget) : box_(box), budget_(budget) {}
+  // `paint`: of the surfaces; none: they have colours of their patches.
+  Writer(const geo::Box3& box, const Budget& budget, PagePaint* paint) : box_(box), budget_(budget), paint_(paint) {}
 
   // Adds one frame, or a single surface, with at most `most` triangles. True where its vertices are
   // those of the mesh.
@@ -61,6 +65,12 @@ class Writer {
          {"triangles", shared(name, "triangles", corners, shown.vertices.size() < 65536 ? 2 : 4, 3)},
          {"patch", shared(name, "patch", patch, 4, 1)},
          {"piece", shared(name, "piece", pieces.of_row, 4, 1)}});
+    if (paint_ && has_paint(mesh)) {
+      if (coarse)
+        notice("paint", "Decimated surfaces are shown without the model's materials and colours");
+      else
+        add_paint(paint_->of(mesh), name);
+    }
     const std::string last = last_["position"];
     pack_.points(name + "position", shown.vertices, box_,
                  !last.empty() && pack_.length(last) == 3 * shown.vertices.size() ? last : "");
@@ -173,7 +183,10 @@ class Writer {
     about_["y_up"] = options.y_up;
     about_["unit"] = 0.5 * box_.diagonal();
     about_["made"] = made;
+    about_["color"] = options.color;
+    about_["paint"] = paint_ ? paint_->about() : json(nullptr);
     about_["arrays"] = pack_.manifest();
+    if (paint_ && !paint_->complete()) notice("images", images_left_out);
     Page page;
     for (const auto& [key, text] : notice_of_) page.notices.push_back(text);
     about_["notices"] = page.notices;
@@ -191,6 +204,16 @@ class Writer {
   }
 
  private:
+  // Materials, places in images and colours of the last surface's triangles.
+  void add_paint(const PaintArrays& paint, const std::string& name) {
+    about_["surfaces"].back()["paint"] = {{"material", shared(name, "material", paint.material, 4, 1)},
+                                          {"u", shared(name, "u", paint.u.steps, 2, 1)},
+                                          {"v", shared(name, "v", paint.v.steps, 2, 1)},
+                                          {"lo", {paint.u.lo, paint.v.lo}},
+                                          {"step", {paint.u.step, paint.v.step}},
+                                          {"tint", shared(name, "tint", paint.tint, 1, 3)}};
+  }
+
   void notice(const std::string& key, const std::string& text) { notice_of_.try_emplace(key, text); }
 
   // An array that often equals that of the frame before.
@@ -259,6 +282,7 @@ class Writer {
 
   geo::Box3 box_;
   Budget budget_;
+  PagePaint* paint_;
   Pack pack_;
   json about_ = {
       {"surfaces", json::array()}, {"obstacles", json::array()}, {"fronts", json::array()}, {"nodes", nullptr}};
@@ -298,13 +322,20 @@ geo::Box3 box_of_points(const Subject& subject) {
   return box;
 }
 
+// Images take at most a third of the page, so that the surface keeps the greater part.
+std::optional<PagePaint> paint_for(const PageOptions& options) {
+  if (options.color != "model") return std::nullopt;
+  return PagePaint(static_cast<std::size_t>(options.megabytes * 1e6 / 3));
+}
+
 }  // namespace
 
 Page page_of(const Subject& subject, const PageOptions& options, const geo::Progress& progress) {
   const geo::Box3 box = box_of_points(subject);
+  auto paint = paint_for(options);
   return fitted(options, needs_of(subject), [&](const Budget& budget) {
     geo::report(progress, "page", 0, 1);
-    Writer writer(box, budget);
+    Writer writer(box, budget, paint ? &*paint : nullptr);
     const bool some = !subject.surface.triangles.empty();
     const bool whole = some && writer.add_surface(subject.surface, subject.title, budget.triangles);
     writer.add_nodes(subject, some ? 0 : -1, whole, options.before);
@@ -321,16 +352,18 @@ Page page_of(const Run& run, const PageOptions& options, const geo::Progress& pr
   for (const auto& path : run.frames) {
     geo::report(progress, "read", frames.size(), run.frames.size());
     frames.push_back(geo::read_surface(path).mesh);
+    tool::add_run_materials(frames.back(), path);
     box.add(geo::bounding_box(frames.back()));
     needed.triangles =
         std::max(needed.triangles, double(run.frames.size() + 1) * double(frames.back().triangles.size()));
   }
   const std::vector<geo::TriangleMesh> obstacles = read_obstacles(run);
   const MovingNodes moving = read_moving_nodes(run, subject, frames, progress);
+  auto paint = paint_for(options);
   for (const auto& frame : moving.frames)
     for (const auto& p : frame.position) box.add(p);
   return fitted(options, needed, [&](const Budget& budget) {
-    Writer writer(box, budget);
+    Writer writer(box, budget, paint ? &*paint : nullptr);
     const double most = budget.triangles / double(frames.size() + 1);
     for (std::size_t f = 0; f < frames.size(); ++f) {
       geo::report(progress, "page", f, frames.size());

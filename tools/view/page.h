@@ -14,7 +14,8 @@ struct PageOptions {
   double megabytes = 20;              ///< upper bound of the size; larger content is made coarser
   const geo::Body* before = nullptr;  ///< an earlier state of the body, for the edges that were cut; see cut_edges()
   double frame_rate = 24;
-  bool y_up = false;  ///< the model's y axis is vertical, not z
+  bool y_up = false;            ///< the model's y axis is vertical, not z
+  std::string color = "model";  ///< what is coloured at first; without "model", materials are left out
 };
 
 /// A page for one subject, or for a run with what its checkpoint holds.

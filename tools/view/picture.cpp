@@ -11,12 +11,6 @@
 namespace view {
 namespace {
 
-std::uint8_t srgb(float linear) {
-  const float c = std::clamp(linear, 0.0f, 1.0f);
-  const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(255 * s));
-}
-
 void png_failed(png_structp, png_const_charp message) {
   throw geo::OutputError(std::string("PNG cannot be written: ") + message);
 }
@@ -50,11 +44,17 @@ constexpr Glyph glyphs[] = {
 
 }  // namespace
 
+std::uint8_t srgb_byte(float linear) {
+  const float c = std::clamp(linear, 0.0f, 1.0f);
+  const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
+  return static_cast<std::uint8_t>(std::lround(255 * s));
+}
+
 std::vector<std::uint8_t> rgb_bytes(const Picture& picture) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(3 * picture.pixels.size());
   for (const Color& pixel : picture.pixels)
-    for (const float channel : pixel) bytes.push_back(srgb(channel));
+    for (const float channel : pixel) bytes.push_back(srgb_byte(channel));
   return bytes;
 }
 

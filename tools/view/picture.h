@@ -21,6 +21,9 @@ struct Picture {
   const Color& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
 };
 
+/// Linear light, 0 to 1, as 8-bit sRGB.
+std::uint8_t srgb_byte(float linear);
+
 /// 8-bit sRGB, three bytes a pixel, row by row from the top.
 std::vector<std::uint8_t> rgb_bytes(const Picture& picture);
 

@@ -280,6 +280,7 @@ class Tracer {
       // Two coincident sheets: each is visible from its own side, whichever the ray hits first.
       const Vec3 flat(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z);
       if (!stage_.back_colors.empty() && flat.dot(d) > 0) hit.color = stage_.back_colors[r.hit.primID];
+      if (stage_.paint.has(r.hit.primID)) hit.color = stage_.paint.color(r.hit.primID, r.hit.u, r.hit.v);
       hit.opaque = stage_.sheets_opaque && stage_.surface.patch[r.hit.primID] != 0;
       if (stage_.wire && std::min({r.hit.u, r.hit.v, 1 - r.hit.u - r.hit.v}) < 0.035f)
         hit.color = scaled(hit.color, 0.45);

@@ -7,6 +7,7 @@
 
 #include <kerf/mesh.h>
 #include <kerf/progress.h>
+#include "view/paint.h"
 #include "view/picture.h"
 
 namespace view {
@@ -31,6 +32,7 @@ struct Stage {
   geo::TriangleMesh surface;
   std::vector<Color> triangle_colors;  ///< per triangle
   std::vector<Color> back_colors;      ///< per triangle, seen from behind; empty: the same
+  Paint paint;                         ///< of triangles; those that have it have no other colour
   std::vector<Sphere> spheres;
   std::vector<Stick> sticks;
   std::size_t obstacles = 0;  ///< number of triangles of obstacles, the last ones

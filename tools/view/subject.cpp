@@ -8,6 +8,7 @@
 #include <kerf/error.h>
 #include <kerf/files.h>
 #include "kind.h"
+#include "run_materials.h"
 #include "tool.h"
 
 namespace view {
@@ -74,6 +75,7 @@ void add(Subject& subject, const std::string& path) {
     case tool::Kind::surface:
       if (!subject.surface.triangles.empty()) refuse("a surface");
       subject.surface = tool::parse_surface(bytes, path).mesh;
+      tool::add_run_materials(subject.surface, path);
       if (const auto beside = obstacles_of(path); !beside.empty()) subject.obstacles = geo::read_surface(beside).mesh;
       break;
   }

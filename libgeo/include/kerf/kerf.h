@@ -1,6 +1,7 @@
 // All public headers of the library.
 #pragma once
 
+#include "kerf/appearance.h"
 #include "kerf/body.h"
 #include "kerf/body_file.h"
 #include "kerf/check.h"

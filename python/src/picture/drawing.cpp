@@ -56,6 +56,15 @@ void color_triangles(view::Stage& stage, const Drawing& drawing, const geo::Tria
   }
 }
 
+// Surfaces lie in the stage one after another, without their attributes.
+void paint_triangles(view::Stage& stage, const Drawing& drawing) {
+  std::size_t first = 0;
+  for (const auto* mesh : drawing.surfaces) {
+    stage.paint.add(view::paint_of(*mesh), first);
+    first += mesh->triangles.size();
+  }
+}
+
 // Nodes and edges that a cut-away does not remove.
 void add_nodes(view::Stage& stage, const Drawing& drawing) {
   constexpr view::Color blue{0.10f, 0.22f, 0.55f};  // of edges, as kerf-view draws them
@@ -89,6 +98,7 @@ view::Picture draw(const Drawing& drawing, const geo::Progress& progress) {
   subject.obstacles = joined(drawing.obstacles);
   view::Stage stage = view::stage_of(subject, drawing.look);
   stage.ground = drawing.ground;
+  if (drawing.look.coloring == view::Coloring::model) paint_triangles(stage, drawing);
   color_triangles(stage, drawing, subject.surface);
   add_nodes(stage, drawing);
   view::Camera camera = drawing.camera;

@@ -17,10 +17,7 @@ using Meshes = std::vector<std::shared_ptr<Mesh>>;
 
 view::Look look_from(const py::dict& given) {
   view::Look look;
-  const auto color = given["color"].cast<std::string>();
-  look.coloring = color == "piece"   ? view::Coloring::piece
-                  : color == "plain" ? view::Coloring::plain
-                                     : view::Coloring::patch;
+  look.coloring = view::coloring_of(given["color"].cast<std::string>());
   look.skin = view::parse_color(given["skin"].cast<std::string>());
   look.wire = given["wire"].cast<bool>();
   look.opacity = given["opacity"].cast<double>();

@@ -90,6 +90,9 @@ function dress() {
   $("updated-label").hidden = !(n && n.updated);
   $("front-controls").hidden = about.fronts.length === 0;
   $("cracks").disabled = !cracked;
+  const painted = about.surfaces.some((s) => s.paint);
+  if (!painted) $("color").options[0].remove();
+  state.color = about.color === "model" && !painted ? "patch" : about.color;
   $("obstacles-label").hidden = about.obstacles.length === 0;
   $("rest-label").hidden = !(n && n.rest > 0);
   $("explode-label").hidden = !about.surfaces.some((s) => arrays[s.piece].some((p) => p > 0));
@@ -125,6 +128,7 @@ async function begin() {
   about = JSON.parse($("about").textContent);
   arrays = await unpack($("data").textContent, about.arrays);
   $("data").textContent = "";
+  await loadImages();
   dress();
   followAddress();
   layers.push(new SurfaceLayer(), new ObstacleLayer(), new FrontLayer(), new NodeLayer(), new GraphLayer(), new BindingLayer(), new InspectLayer());

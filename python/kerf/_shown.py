@@ -3,8 +3,15 @@ from kerf import _kerf
 from kerf._pictures import picture
 
 
+def _require_mesh(of, method):
+    # Called through the class, a method takes any object; those of the compiled module refuse it likewise.
+    if not isinstance(of, _kerf.Mesh):
+        raise TypeError(f"{method}() is a method of Mesh, and got a {type(of).__name__}")
+
+
 def to_trimesh(self):
     """The mesh as a trimesh.Trimesh, with the arguments of to_trimesh_kwargs(). Raises kerf.Error without the package trimesh."""
+    _require_mesh(self, "to_trimesh")
     try:
         import trimesh
     except ImportError as error:
@@ -18,6 +25,7 @@ def to_open3d(self):
 
     Raises kerf.Error without the package open3d.
     """
+    _require_mesh(self, "to_open3d")
     try:
         import open3d
     except ImportError as error:

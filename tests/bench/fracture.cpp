@@ -55,7 +55,7 @@ geo::Scene struck_pane(int cells) {
   scene.obstacles.push_back(ball);
   scene.frame_rate = 120;
   scene.dt = 1.0 / 240;
-  scene.frames = 12;
+  scene.frames = 4;
   scene.fracture.on = true;
   scene.fracture.cells = cells;
   scene.fracture.strength = 2e5;

@@ -57,7 +57,7 @@ void require_finish(const Command& w) {
     throw tool::UsageError("--edge-detail must be a fraction of the diagonal, at least 0 and below 1");
   if (!(w.edge_width >= 0.001 && w.edge_width <= 1)) throw tool::UsageError("--edge-width must be from 0.001 to 1");
   if (w.chips < 0 || w.chips > 100000) throw tool::UsageError("--chips must be from 0 to 100000");
-  if (!(w.chip_size > 0 && w.chip_size <= 1)) throw tool::UsageError("--chip-size must be above 0 and at most 1");
+  if (!(w.chip_size >= 0.01 && w.chip_size <= 1)) throw tool::UsageError("--chip-size must be from 0.01 to 1");
   if (w.chips > 0 && !w.depth.empty()) throw tool::UsageError("--chips and --depth do not go together: none break off");
   if (!(w.tolerance >= 0 && w.tolerance <= 1000)) throw tool::UsageError("--tolerance must be from 0 to 1000 pixels");
 }

@@ -192,9 +192,9 @@ Score make_score(const Complex& model, const ScoreOptions& options, const Progre
   if (!(options.depth > 0 && options.depth <= 1)) throw InputError("the depth must be above 0 and at most 100 percent");
   if (options.attempts < 1) throw InputError("at least one attempt is needed");
   const auto& chips = options.chips;
-  if (chips.count < 0 || chips.count > 100000 || !(chips.size > 0 && chips.size <= 1) ||
+  if (chips.count < 0 || chips.count > 100000 || !(chips.size >= 0.01 && chips.size <= 1) ||
       !(chips.least >= 0 && chips.least <= 1))
-    throw InputError("chips must be at most 100000, their size above 0 and at most 1, the least one from 0 to 1");
+    throw InputError("chips must be at most 100000, their size from 0.01 to 1, the least one from 0 to 1");
   if (chips.count > 0 && options.depth < 1)
     throw InputError("a partial score has no chips: none would break off; give a depth of 100 percent, or no chips");
   const auto& p = options.pattern;

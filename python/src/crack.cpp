@@ -83,29 +83,51 @@ bool has_integers(const py::handle& object) {
   return kind.cast<std::string>() == "i" || kind.cast<std::string>() == "u";
 }
 
+// Whether an object is an array of NumPy with integers: no one writes a line so by hand.
+bool is_integer_array(const py::handle& object) { return py::isinstance<py::array>(object) && has_integers(object); }
+
+bool is_integral(const py::handle& object) {
+  const auto numpy = py::module_::import("numpy");
+  const auto array = numpy.attr("asarray")(object);
+  return numpy.attr("all")(numpy.attr("equal")(array, numpy.attr("floor")(array))).cast<bool>();
+}
+
+MeshArguments pair_of_arrays(const py::object& vertices, const py::object& faces) {
+  MeshArguments arguments;
+  for (auto* at : {&arguments.uv, &arguments.normals, &arguments.colors, &arguments.groups, &arguments.group_names,
+                   &arguments.patch, &arguments.site, &arguments.source})
+    *at = py::none();
+  arguments.vertices = vertices;
+  arguments.faces = faces;
+  return arguments;
+}
+
 // A pair of arrays may be vertices and faces, or two lines. Vertices and faces become a mesh; null:
-// two lines. Throws InputError for a pair that may be both.
+// two lines. Throws InputError for a pair that may be both, and for an array of integers that are
+// no indices.
 std::shared_ptr<Mesh> mesh_of_pair(const py::sequence& pair) {
+  bool must_be_faces = false;
   try {
-    if (!has_integers(pair[1])) return nullptr;
-    MeshArguments arguments;
-    for (auto* at : {&arguments.uv, &arguments.normals, &arguments.colors, &arguments.groups, &arguments.group_names,
-                     &arguments.patch, &arguments.site, &arguments.source})
-      *at = py::none();
-    arguments.vertices = pair[0];
-    arguments.faces = pair[1];
-    auto mesh = std::make_shared<Mesh>(mesh_from(arguments));
+    must_be_faces = is_integer_array(pair[1]) && !has_integers(pair[0]);
+    py::object faces = pair[1];
+    if (!has_integers(faces)) {
+      if (!is_integral(faces)) return nullptr;
+      faces = py::module_::import("numpy").attr("asarray")(faces).attr("astype")("int64");
+    }
+    auto mesh = std::make_shared<Mesh>(mesh_from(pair_of_arrays(pair[0], faces)));
     const bool has_triangles = std::none_of(mesh->mesh.triangles.begin(), mesh->mesh.triangles.end(),
                                             [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
     if (!has_triangles) return nullptr;
-    if (!has_integers(pair[0])) return mesh;
+    if (!has_integers(pair[0]) && has_integers(pair[1])) return mesh;
   } catch (const geo::InputError&) {
+    if (must_be_faces) throw;
     return nullptr;  // no indices of vertices
   } catch (const py::error_already_set&) {
     return nullptr;  // no arrays
   }
   throw geo::InputError(
-      "what: two arrays of integers may be a mesh or two lines; give kerf.Mesh(vertices, faces), or lines of floats");
+      "what: two such arrays may be a mesh or two lines; give kerf.Mesh(vertices, faces), or a kerf.Front of two "
+      "steps");
 }
 
 void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& options, double max_move,

@@ -130,6 +130,10 @@ class Jobs(unittest.TestCase):
         self.assertEqual(self.model.crack([[[-2, -2, 0], [2, -2, 0]], [[-2, 2, 0], [2, 2, 0]]]).piece_count, 2)  # two lines of integers
         with self.assertRaisesRegex(kerf.InputError, r"may be a mesh or two lines; give kerf\.Mesh"):
             self.model.crack((np.round(10 * FLAT).astype(int), TWO))
+        with self.assertRaisesRegex(kerf.InputError, r"may be a mesh or two lines; give kerf\.Mesh"):
+            self.model.crack((FLAT, TWO.astype(float)))
+        with self.assertRaisesRegex(kerf.InputError, "vert"):  # indices that the points do not have
+            self.model.crack((FLAT, TWO + 9))
 
     def test_bytes_are_colors(self):
         given = np.full((4, 3), 200, np.uint8)

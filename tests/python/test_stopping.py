@@ -90,6 +90,27 @@ class Stopping(unittest.TestCase):
             model.decimate(deviation=1e-3, faces=80000)
         np.testing.assert_array_equal(models[0].surface().vertices, models[1].surface().vertices)
 
+    def test_output_after_a_stopped_reconstruction(self):
+        """The library that fits a surface prints; it is silenced, and what Python prints meanwhile is not."""
+        script = """
+import os, signal, threading
+import kerf
+points = kerf.shapes.pumpkin(70).vertices
+for pause in (0.3, 0.8, 1.3):
+    timer = threading.Timer(pause, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    try:
+        kerf.reconstruct(points)
+        print("ended", flush=True)
+    except KeyboardInterrupt:
+        print("stopped", flush=True)
+    timer.join()
+"""
+        run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(len(run.stdout.split()), 3, run.stdout + run.stderr)
+        self.assertTrue(set(run.stdout.split()) <= {"ended", "stopped"}, run.stdout)
+
     def test_exit_with_daemon_threads(self):
         code = """
 import sys, threading, time

@@ -3,14 +3,12 @@
 // PCL computes with single precision.
 #include "scan/module.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -52,36 +50,38 @@ double squared_to_triangle(const geo::Vec3& p, const geo::Vec3& a, const geo::Ve
   return inside ? std::pow((p - a).dot(n), 2) / n.squaredNorm() : least;
 }
 
-// PCL prints details of its octree, and standard output may be the solid's file.
-class Silence {
+// One fit of a surface at a time, as PCL keeps its octree's nodes in a static allocator. It prints
+// details of that octree, and standard output may be the solid's file: meanwhile the streams of C
+// and C++ are silent. Descriptors stay, by which others write: Python goes on after Ctrl-C while a
+// fit ends.
+class SilentFit {
  public:
-  Silence() {
-    flush();
-    const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
-      kept_[stream] = ::dup(stream);
-      if (null >= 0) ::dup2(null, stream);
-    }
-    if (null >= 0) ::close(null);
-  }
-  ~Silence() {
-    flush();
-    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
-      if (kept_[stream] < 0) continue;
-      ::dup2(kept_[stream], stream);
-      ::close(kept_[stream]);
-    }
-  }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
-
- private:
-  static void flush() {
+  SilentFit() : lock_(mutex()), out_(stdout), err_(stderr) {
     std::cout.flush();
     std::fflush(stdout);
     std::fflush(stderr);
+    cout_ = std::cout.rdbuf(nullptr);
+    cerr_ = std::cerr.rdbuf(nullptr);
+    if (std::FILE* const null = std::fopen("/dev/null", "we")) stdout = stderr = null;
   }
-  int kept_[STDERR_FILENO + 1] = {-1, -1, -1};
+  ~SilentFit() {
+    if (stdout != out_) std::fclose(stdout);
+    stdout = out_;
+    stderr = err_;
+    std::cout.rdbuf(cout_);
+    std::cerr.rdbuf(cerr_);
+  }
+  SilentFit(const SilentFit&) = delete;
+  SilentFit& operator=(const SilentFit&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  std::unique_lock<std::mutex> lock_;
+  std::FILE *out_, *err_;
+  std::streambuf *cout_ = nullptr, *cerr_ = nullptr;
 };
 
 class Reconstruction {
@@ -235,7 +235,7 @@ class Reconstruction {
     Points vertices;
     std::vector<pcl::Vertices> polygons;
     {
-      const Silence silence;
+      const SilentFit silent;
       poisson.reconstruct(vertices, polygons);
     }
     geo::TriangleMesh& mesh = result_.mesh;

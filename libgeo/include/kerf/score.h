@@ -65,8 +65,10 @@ struct JaggedOptions {
 
 /// Chips: small pieces that break off where walls meet the skin or each other.
 struct ChipOptions {
-  int count = 0;       ///< how many are wanted
-  double size = 0.25;  ///< length of a chip along its edge: a fraction of the cube root of the mean piece's volume
+  int count = 0;  ///< how many are wanted
+  /// Length of a chip along its edge: a fraction of the cube root of the mean piece's volume, from
+  /// 0.01 to 1. Smaller chips would need walls of millions of triangles.
+  double size = 0.25;
   /// No chip is smaller than this fraction of the volume that a chip of mean length has where faces
   /// meet at right angles, about a tenth of (length / 2)³.
   double least = 0.2;

@@ -174,7 +174,7 @@ TEST_CASE("Outlines of random images do not meet", "[score][image]") {
   }
 }
 
-TEST_CASE("Spots are left out; images without sense are refused", "[score][image]") {
+TEST_CASE("Spots are left out, and images without sense are refused", "[score][image]") {
   const Box3 box{{0, 0, 0}, {1, 1, 1}};
   GrayImage image = image_of(30, 30, disc(15, 15, 8));
   image.brightness[0 * 30 + 3] = 0;    // at the border: a curve of its own

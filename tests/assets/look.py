@@ -4,11 +4,12 @@ READERS has three in node_modules. From each of four sides all pixels are compar
 or of the outline: there the rounding of positions decides which triangle a pixel shows. The others may differ by 1 % of full
 intensity; one in a thousand may differ more, where a texture's borders lie. PICTURE shows original, pieces and differences.
 """
-import functools, http.server, os, sys, threading
+import os, sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "tools"))
 from browser import Browser
+from served import serve
 
 readers, original, pieces = (os.path.abspath(path) for path in sys.argv[1:4])
 given = {"/original.glb": original, "/pieces.glb": pieces}
@@ -69,28 +70,10 @@ SCRIPT = """(async () => {
   return told;
 })()"""
 
-
-class Files(http.server.SimpleHTTPRequestHandler):
-    def do_GET(self):
-        if self.path != "/":
-            return super().do_GET()
-        self.send_response(200)
-        self.send_header("Content-Type", "text/html")
-        self.end_headers()
-        self.wfile.write(PAGE)
-
-    def translate_path(self, path):
-        return given.get(path) or super().translate_path(path)
-
-    def log_message(self, *arguments):
-        pass
-
-
-server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=readers))
-threading.Thread(target=server.serve_forever, daemon=True).start()
+address = serve(readers, PAGE, given)
 browser = Browser(1440, 1920)
 try:
-    browser.open(f"http://127.0.0.1:{server.server_port}/")
+    browser.open(address + "/")
     told = browser.run(SCRIPT)
     if len(sys.argv) > 4:
         browser.screenshot(sys.argv[4])

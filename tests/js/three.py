@@ -2,28 +2,22 @@
 
 Pieces keep texture coordinates and materials: of the planks, of the iron, and of new faces.
 """
-import functools, http.server, os, shutil, sys, threading
+import os, shutil, sys
 
 sys.dont_write_bytecode = True
 here = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(here, "..", "tools"))
 from browser import Browser
+from served import serve
 
 folder = os.path.abspath(sys.argv[1])
 for name in ("index.html", "crate.js", "kerf-three.js"):
     shutil.copy(os.path.join(here, "..", "..", "samples", "js", name), folder)
 
-
-class Files(http.server.SimpleHTTPRequestHandler):
-    def log_message(self, *arguments):
-        pass
-
-
-server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=folder))
-threading.Thread(target=server.serve_forever, daemon=True).start()
+address = serve(folder)
 browser = Browser(720, 520)
 try:
-    browser.open(f"http://127.0.0.1:{server.server_port}/index.html")
+    browser.open(address + "/index.html")
     browser.run("import('/crate.js').then((crate) => { window.crate = crate; })")
     browser.click(330, 240)
     browser.run("""new Promise((done, failed) => { const end = performance.now() + 60000;

@@ -41,6 +41,13 @@ BoxVisibility::BoxVisibility(const Complex& complex, const Box3& box, std::span<
   for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
 }
 
+BoxVisibility::BoxVisibility(const Complex& complex, std::span<const FaceId> faces) {
+  for (const FaceId f : faces) {
+    triangles_.push_back(complex.corners(f));
+    boxes_.push_back(complex.box(f));
+  }
+}
+
 bool BoxVisibility::blocked(const Vec3& p, const Vec3& q) const {
   Box3 segment{p, p};
   segment.add(q);

@@ -27,7 +27,9 @@ class BoxVisibility {
  public:
   /// Reads the faces in `box`, without those in `except` (ascending).
   BoxVisibility(const Complex& complex, const Box3& box, std::span<const FaceId> except = {});
-  /// As is_blocked(). Precondition: the segment lies in the box.
+  /// Reads `faces`, as if there were no others.
+  BoxVisibility(const Complex& complex, std::span<const FaceId> faces);
+  /// As is_blocked(). Precondition: the segment lies in the box, if there is one.
   bool blocked(const Vec3& p, const Vec3& q) const;
 
  private:

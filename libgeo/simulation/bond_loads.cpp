@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <string_view>
+#include <tuple>
 
 #include "body/incremental_cache.h"
 #include "body/locate.h"
@@ -75,13 +76,20 @@ class NewCracks {
  public:
   NewCracks(const Complex& complex, std::uint32_t first) {
     for (std::uint32_t f = first; f < complex.face_count(); ++f)
-      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack > 0) boxes_.push_back(complex.box(FaceId(f)));
+      if (complex.alive(FaceId(f)) && complex.face(FaceId(f)).crack > 0) {
+        faces_.push_back(FaceId(f));
+        boxes_.push_back(complex.box(FaceId(f)));
+      }
   }
-  bool meet(const Box3& box) const {
-    return std::any_of(boxes_.begin(), boxes_.end(), [&](const Box3& b) { return b.meets(box); });
+  std::vector<FaceId> in(const Box3& box) const {
+    std::vector<FaceId> found;
+    for (std::size_t k = 0; k < faces_.size(); ++k)
+      if (boxes_[k].meets(box)) found.push_back(faces_[k]);
+    return found;
   }
 
  private:
+  std::vector<FaceId> faces_;
   std::vector<Box3> boxes_;
 };
 
@@ -108,18 +116,25 @@ double BondLoad::effective(double friction) const {
   return std::max(0.0, shear + friction * tension);
 }
 
-// The material points of a solid by position.
+// The material points of a solid, ordered by position and with the volumes of their cells: a cut
+// changes their blocks, and the scale of all volumes, also far from the crack.
 class BondLoads::Surroundings {
  public:
+  static bool is_before(const Vec3& a, const Vec3& b) {
+    return std::tie(a.x(), a.y(), a.z()) < std::tie(b.x(), b.y(), b.z());
+  }
+
   Surroundings(const Body& body, const MaterialPoints& points) : body_(body) {
     for (std::uint32_t b = 0; b < points.blocks.size(); ++b)
-      for (std::uint32_t i = 0; i < points.blocks[b].points.size(); ++i) {
-        const MaterialPoint& point = points.blocks[b].points[i];
-        if (point.quality == MomentQuality::singular) continue;
-        position_.push_back(point.position);
-        volume_.push_back(point.volume);
-        place_.push_back({.block = b, .index = i});
-      }
+      for (std::uint32_t i = 0; i < points.blocks[b].points.size(); ++i)
+        if (points.blocks[b].points[i].quality != MomentQuality::singular) place_.push_back({.block = b, .index = i});
+    const auto at = [&](const Point& p) -> const MaterialPoint& { return points.blocks[p.block].points[p.index]; };
+    std::sort(place_.begin(), place_.end(),
+              [&](const Point& p, const Point& q) { return is_before(at(p).position, at(q).position); });
+    for (const Point& p : place_) {
+      position_.push_back(at(p).position);
+      volume_.push_back(at(p).unscaled_volume);
+    }
     if (!position_.empty()) grid_ = NodeGrid(body.finest_spacing, position_);
   }
 
@@ -151,20 +166,38 @@ class BondLoads::Surroundings {
         {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)});
   }
 
-  // Those of the points `around` that count: near a bond's wall, which they see.
-  std::vector<NearPoint> near(const GluedBond& bond, const std::vector<Vec3>& corners,
-                              const std::vector<std::uint32_t>& around, double reach) const {
-    const Plane plane = plane_of(bond.normal);
+  // For each point `around`, how it sees a bond's wall. `before`: the same without `cracks`, for
+  // points in the same order, with the same reach.
+  std::vector<Sight> sights(const GluedBond& bond, const std::vector<Vec3>& corners,
+                            const std::vector<std::uint32_t>& around, double reach, const std::vector<Sight>& before,
+                            const BoxVisibility& cracks) const {
     const std::vector<Sphere> spheres = spheres_of(bond, corners);
+    std::vector<Sight> result;
+    auto known = before.begin();
+    for (const auto p : around) {
+      const Vec3& x = position_[p];
+      while (known != before.end() && is_before(known->point, x)) ++known;
+      const bool is_known = known != before.end() && known->point == x;
+      Sight sight = is_known ? *known : foot_on(x, bond, corners, spheres, reach);
+      const bool is_blocked_now = sight.distance < reach &&
+                                  (is_known ? cracks.blocked(x, sight.from) : is_blocked(body_.surface, x, sight.from));
+      if (is_blocked_now) sight.distance = reach;
+      result.push_back(sight);
+    }
+    return result;
+  }
+
+  // Those of the points `around` that count: near a bond's wall, which they see.
+  std::vector<NearPoint> near(const GluedBond& bond, const std::vector<std::uint32_t>& around, double reach,
+                              const std::vector<Sight>& sights) const {
+    const Plane plane = plane_of(bond.normal);
     std::vector<NearPoint> result;
     for (std::uint32_t k = 0; k < around.size(); ++k) {
-      const auto p = around[k];
-      const double distance = distance_seen(position_[p], bond, corners, spheres, reach);
-      if (distance >= reach) continue;
-      const double share = distance / reach;
+      if (sights[k].distance >= reach) continue;
+      const double share = sights[k].distance / reach;
       result.push_back({.point = k,
-                        .weight = volume_[p] * (1 - share * share),
-                        .at = plane.transpose() * (position_[p] - bond.centroid)});
+                        .weight = volume_[around[k]] * (1 - share * share),
+                        .at = plane.transpose() * (sights[k].point - bond.centroid)});
     }
     return result;
   }
@@ -185,23 +218,22 @@ class BondLoads::Surroundings {
     return spheres;
   }
 
-  // The distance of x from the faces; `reach` where it is farther, or does not see them.
-  double distance_seen(const Vec3& x, const GluedBond& bond, const std::vector<Vec3>& corners,
-                       const std::vector<Sphere>& spheres, double reach) const {
-    double nearest = reach;
-    Vec3 seen_from;
+  // The nearest place of the faces to x; `reach` away where it is farther.
+  static Sight foot_on(const Vec3& x, const GluedBond& bond, const std::vector<Vec3>& corners,
+                       const std::vector<Sphere>& spheres, double reach) {
+    Sight nearest{.point = x, .from = x, .distance = reach};
     for (std::size_t f = 0; f < bond.faces.size(); ++f) {
-      const double bound = nearest + spheres[f].radius;
+      const double bound = nearest.distance + spheres[f].radius;
       if ((x - spheres[f].center).squaredNorm() > bound * bound) continue;
       const auto& [i, j, k] = bond.faces[f];
       const Vec3 &a = corners[i], &b = corners[j], &c = corners[k];
       const Vec3 foot = closest_point_on_triangle(x, a, b, c);
       const double distance = (foot - x).norm();
-      if (distance >= nearest) continue;
-      nearest = distance;
-      seen_from = foot + 0.01 * ((a + b + c) / 3 - foot);  // off the face's edges, where cracks meet it
+      if (distance >= nearest.distance) continue;
+      nearest.distance = distance;
+      nearest.from = foot + 0.01 * ((a + b + c) / 3 - foot);  // off the face's edges, where cracks meet it
     }
-    return nearest < reach && !is_blocked(body_.surface, x, seen_from) ? nearest : reach;
+    return nearest;
   }
 
   const Body& body_;
@@ -228,19 +260,33 @@ void BondLoads::update(const Body& body, const Solid& solid, const GluedBonds& g
       const double reach = surroundings.reach_of(bond);
       around[w] = surroundings.around(bond, glued.points, reach);
       const std::uint64_t hash = surroundings.hash_of(around[w], reach);
-      if (walls_[w].around == hash && !cracks.meet(surroundings_of(bond, glued.points, reach))) continue;
-      walls_[w] = wall_of(surroundings.near(bond, glued.points, around[w], reach), bond, glued.points);
-      walls_[w].around = hash;
+      Wall& wall = walls_[w];
+      const std::vector<FaceId> new_faces = cracks.in(surroundings_of(bond, glued.points, reach));
+      if (wall.around == hash && new_faces.empty()) continue;
+      if (wall.reach != reach) wall.sights.clear();
+      std::vector<Sight> sights = surroundings.sights(bond, glued.points, around[w], reach, wall.sights,
+                                                      BoxVisibility(body.surface, new_faces));
+      wall = wall_of(surroundings.near(bond, around[w], reach, sights), bond, glued.points);
+      wall.around = hash;
+      wall.reach = reach;
+      wall.sights = std::move(sights);
     }
   });
-  std::vector<std::uint32_t> index(surroundings.places().size(), ~0u);
+  const std::vector<Point>& places = surroundings.places();
+  std::vector<char> is_used(places.size(), 0);
   for (std::size_t w = 0; w < walls_.size(); ++w)
-    for (const Share& s : walls_[w].shares) index[around[w][s.near]] = 0;
+    for (const Share& s : walls_[w].shares) is_used[around[w][s.near]] = 1;
+  std::vector<std::uint32_t> used;
+  for (std::uint32_t p = 0; p < places.size(); ++p)
+    if (is_used[p]) used.push_back(p);
+  std::sort(used.begin(), used.end(), [&](std::uint32_t p, std::uint32_t q) {
+    return std::tie(places[p].block, places[p].index) < std::tie(places[q].block, places[q].index);
+  });
+  std::vector<std::uint32_t> index(places.size());
   points_.clear();
-  for (std::size_t p = 0; p < index.size(); ++p) {
-    if (index[p] != 0) continue;
+  for (const auto p : used) {
     index[p] = static_cast<std::uint32_t>(points_.size());
-    points_.push_back(surroundings.places()[p]);
+    points_.push_back(places[p]);
   }
   for (std::size_t w = 0; w < walls_.size(); ++w)
     for (Share& s : walls_[w].shares) s.point = index[around[w][s.near]];

@@ -46,8 +46,15 @@ class BondLoads {
     double mean;
     Vec2 slope;
   };
+  // The place of a wall that is the nearest to a point.
+  struct Sight {
+    Vec3 point, from;
+    double distance;  // the wall's reach where it is farther, or the point does not see it
+  };
   struct Wall {
-    std::uint64_t around = 0;  // hash of the points around
+    std::uint64_t around = 0;   // hash of the points around
+    double reach = 0;           // how far from the wall points count, model units
+    std::vector<Sight> sights;  // of the points around
     std::vector<Share> shares;
     std::vector<Vec2> corners;  // about its centroid, in its plane
   };

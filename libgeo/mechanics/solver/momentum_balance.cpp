@@ -12,12 +12,42 @@ namespace geo {
 namespace {
 
 constexpr std::size_t terms_per_task = 64;  // smallest task worth a thread
+// Error over the contact force, in accuracies: the coefficient of friction errs by as much in this
+// step. At the default accuracy of 0.001 it is 0.005 (measured in docs/decisions/088).
+constexpr double error_over_accuracy = 5;
 
 }  // namespace
 
-MomentumBalance::MomentumBalance(const IncrementalPotential& potential, const ActiveIslands& active,
-                                 const std::vector<Vec3>& u)
+CentreWeights::CentreWeights(const IncrementalPotential& potential) {
+  constexpr double rounding = 1e-12;  // of sums of weights, which are about one
+  const PotentialSum& contact = potential.contact();
+  const std::vector<std::uint32_t>& islands = potential.islands().free_of_nodes();
+  std::vector<std::vector<Weight>> sums(contact.size());
+  parallel_for(sums.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      std::vector<Weight>& own = sums[t];
+      for (const NodeWeight& e : contact.stencil(t)) {
+        const auto f = islands[e.node];
+        const auto known = std::find_if(own.begin(), own.end(), [&](const Weight& sum) { return sum.first == f; });
+        if (known == own.end())
+          own.emplace_back(f, e.weight);
+        else
+          known->second += e.weight;
+      }
+      std::erase_if(own, [](const Weight& sum) { return std::abs(sum.second) < rounding; });
+    }
+  });
+  for (const std::vector<Weight>& own : sums) {
+    first_.push_back(weights_.size());
+    weights_.insert(weights_.end(), own.begin(), own.end());
+  }
+  first_.push_back(weights_.size());
+}
+
+MomentumBalance::MomentumBalance(const IncrementalPotential& potential, const CentreWeights& centres,
+                                 const ActiveIslands& active, const std::vector<Vec3>& u)
     : potential_(potential),
+      centres_(centres),
       islands_(potential.islands()),
       u_(u),
       mass_(islands_.free_count(), 0),
@@ -47,10 +77,8 @@ void MomentumBalance::correct(std::vector<Vec3>& direction) {
 }
 
 void MomentumBalance::mark_unbalanced(const std::vector<Vec3>& direction, int iterate,
-                                      std::vector<char>& unbalanced) const {
-  // Error over the contact force: the coefficient of friction errs by as much in this step. At the
-  // default accuracy of 0.001 it is 0.005 (measured in docs/decisions/088).
-  const double tolerance = 5 * potential_.problem().accuracy;
+                                      const std::vector<double>& accuracy, std::vector<char>& unbalanced) const {
+  const double tolerance = error_over_accuracy * potential_.problem().accuracy;
   // Contacts between bodies are others in each step. Their first normal force is an estimate, which
   // is good enough for steps that are less accurate than the default.
   const int least_iterates = potential_.problem().accuracy > 1e-3 ? 1 : 3;
@@ -63,17 +91,20 @@ void MomentumBalance::mark_unbalanced(const std::vector<Vec3>& direction, int it
       found[k] = term.potential->derivatives(term.index, from + moved).force;
     }
   });
-  std::vector<Vec3> error(mass_.size(), Vec3::Zero());
+  std::vector<Vec3> missing(mass_.size(), Vec3::Zero());
   std::vector<double> size(mass_.size(), 0);
   for (std::size_t k = 0; k < terms_.size(); ++k)
     for (const auto& [f, weight] : terms_[k].weight) {
-      error[f] += weight * (found[k] - promised[k]);
+      missing[f] += weight * (found[k] - promised[k]);
       size[f] += std::abs(weight) * promised[k].norm();
       const bool is_estimated = !terms_[k].term.potential->within_components() && iterate < least_iterates;
       if (is_estimated && !promised[k].isZero(0)) unbalanced[island_[f]] = 1;
     }
-  for (std::size_t f = 0; f < error.size(); ++f)
-    if (error[f].norm() > tolerance * size[f]) unbalanced[island_[f]] = 1;
+  const double dt = potential_.problem().dt;
+  for (std::size_t f = 0; f < missing.size(); ++f) {
+    const double of_accuracy = error_over_accuracy * accuracy[island_[f]] * mass_[f] / (dt * dt);
+    if (missing[f].norm() > std::max(tolerance * size[f], of_accuracy)) unbalanced[island_[f]] = 1;
+  }
 }
 
 void MomentumBalance::add_inertia_and_loads(const std::vector<Vec3>& direction) {
@@ -83,26 +114,6 @@ void MomentumBalance::add_inertia_and_loads(const std::vector<Vec3>& direction) 
     if (const auto f = islands_.free_of_nodes()[i]; moves_[f])
       residual_[f] += potential_.load()[i] -
                       problem.solid.mass[i] * per_mass * (u_[i] + direction[i] - potential_.inertial_target()[i]);
-}
-
-// The sums of a stencil's weights in each free-floating island that moves. Both points of a contact
-// within one island sum to zero, up to rounding, and are left out.
-std::vector<std::pair<std::uint32_t, double>> MomentumBalance::centre_weights(Stencil stencil) const {
-  std::vector<std::pair<std::uint32_t, double>> sums;
-  for (const NodeWeight& e : stencil) {
-    const auto f = islands_.free_of_nodes()[e.node];
-    if (!moves_[f]) continue;
-    const auto known = std::find_if(sums.begin(), sums.end(), [&](const auto& sum) { return sum.first == f; });
-    if (known == sums.end())
-      sums.emplace_back(f, e.weight);
-    else
-      known->second += e.weight;
-  }
-  std::erase_if(sums, [](const auto& sum) {
-    constexpr double rounding = 1e-12;  // of sums of weights, which are about one
-    return std::abs(sum.second) < rounding;
-  });
-  return sums;
 }
 
 // The second derivative of a term at the iterate, by differences of its force over a length that is
@@ -123,8 +134,10 @@ void MomentumBalance::add_contact(const std::vector<Vec3>& direction) {
   std::vector<Vec3> force(all.size());
   parallel_for(all.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      centres[k] = {centre_weights(all[k].stencil), all[k]};
+      for (const CentreWeights::Weight& weight : centres_.of(all[k].id))
+        if (moves_[weight.first]) centres[k].weight.push_back(weight);
       if (centres[k].weight.empty()) continue;
+      centres[k].term = all[k];
       Mat3& hessian = centres[k].term.hessian;
       if (all[k].potential->within_components() && !hessian.isZero(0))
         hessian = curvature(all[k], weighted_sum(all[k].stencil, u_));

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -14,13 +15,32 @@
 
 namespace geo {
 
+/// The contact terms of a time step as the centres of the free-floating islands see them.
+class CentreWeights {
+ public:
+  /// The sum of a stencil's weights in a free-floating island.
+  using Weight = std::pair<std::uint32_t, double>;
+  /// Sums the weights of all terms.
+  explicit CentreWeights(const IncrementalPotential& potential);
+  /// Those of a term. Both points of a contact within one island sum to zero, up to rounding, and
+  /// are left out.
+  std::span<const Weight> of(std::uint32_t term) const {
+    return {weights_.data() + first_[term], first_[term + 1] - first_[term]};
+  }
+
+ private:
+  std::vector<Weight> weights_;
+  std::vector<std::size_t> first_;  // per term, and one more
+};
+
 /// Forces, inertia and contact of the free-floating islands that contact touches and nothing
 /// clamps, along one Newton direction.
 class MomentumBalance {
  public:
   /// At the iterate u, after its force(). `active`: islands that the direction moves. Refers to
   /// all of them.
-  MomentumBalance(const IncrementalPotential& potential, const ActiveIslands& active, const std::vector<Vec3>& u);
+  MomentumBalance(const IncrementalPotential& potential, const CentreWeights& centres, const ActiveIslands& active,
+                  const std::vector<Vec3>& u);
 
   /// Adds to the direction the translation of each of these islands that it lacks, to first order:
   /// Σ_g (M_f/Δt² δ_fg + Σ_k W_kf W_kg H_k) t_g = R_f, with M_f its mass, R_f the residual of its
@@ -30,16 +50,18 @@ class MomentumBalance {
   /// Sets unbalanced[island] to 1 where the force of contact on a free-floating island, at the end
   /// of the direction, is not the one that its linearisation promised: what sticks begins to slide,
   /// or a contact opens. Also where bodies touch each other in one of the first iterates, which
-  /// know their normal forces by an estimate only. `iterate`: from 1.
-  void mark_unbalanced(const std::vector<Vec3>& direction, int iterate, std::vector<char>& unbalanced) const;
+  /// know their normal forces by an estimate only. `iterate`: from 1. `accuracy`: per island, of
+  /// displacements where forces are larger than weight, beyond that of contact, model units: what
+  /// moves an island by a few of it is no lack of balance (docs/decisions/108).
+  void mark_unbalanced(const std::vector<Vec3>& direction, int iterate, const std::vector<double>& accuracy,
+                       std::vector<char>& unbalanced) const;
 
  private:
   // A contact term as the centres of the free-floating islands see it.
   struct CentreTerm {
-    std::vector<std::pair<std::uint32_t, double>> weight;  // free-floating island, sum of the weights there
-    PotentialSum::LinearisedTerm term;                     // with the true curvature
+    std::vector<CentreWeights::Weight> weight;  // of those that move
+    PotentialSum::LinearisedTerm term;          // with the true curvature
   };
-  std::vector<std::pair<std::uint32_t, double>> centre_weights(Stencil stencil) const;
   Mat3 curvature(const PotentialSum::LinearisedTerm& term, const Vec3& at) const;
   void add_inertia_and_loads(const std::vector<Vec3>& direction);
   void add_contact(const std::vector<Vec3>& direction);
@@ -48,6 +70,7 @@ class MomentumBalance {
   std::vector<Vec3> solved() const;
 
   const IncrementalPotential& potential_;
+  const CentreWeights& centres_;
   const Islands& islands_;
   const std::vector<Vec3>& u_;
   std::vector<double> mass_;           // per free-floating island

@@ -7,8 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "mechanics/solver/momentum_balance.h"
-
 namespace geo {
 namespace {
 
@@ -26,10 +24,12 @@ bool any(const std::vector<char>& mask) { return std::find(mask.begin(), mask.en
 NewtonSolver::NewtonSolver(const StepProblem& problem, SolverCache& cache)
     : problem_(problem),
       potential_(problem),
+      centres_(potential_),
       rotation_(potential_),
       preconditioner_(problem, cache),
       active_(potential_.islands(), problem.solid.subdomains),
       accuracy_(potential_.islands().count(), problem.accuracy),
+      contact_error_(potential_.islands().count(), 0),
       length_(potential_.islands().count(), 0),
       moved_(potential_.islands().count(), std::numeric_limits<double>::max()) {
   direction_.step.resize(problem.solid.size());
@@ -62,7 +62,7 @@ bool NewtonSolver::iterate(bool first, StepReport& report) {
       conjugate_gradients(potential_, preconditioner_, active_, at_.force, {first, moved_, accuracy_}, direction_);
   ++report.newton;
   rotation_.conserve_momentum(active_, at_.u, direction_.step);
-  MomentumBalance balance(potential_, active_, at_.u);
+  MomentumBalance balance(potential_, centres_, active_, at_.u);
   balance.correct(direction_.step);
   active_.maximum(length_, [&](std::size_t i) { return problem_.squared_in_spacings(direction_.step[i], i); });
   active_.take_square_roots(length_);
@@ -71,7 +71,7 @@ bool NewtonSolver::iterate(bool first, StepReport& report) {
   const std::vector<RigidMotion> rotations = rotation_.rotations(at_.u, direction_.step);
   std::vector<char> searching = unconverged(rotations);
   // A direction that only balances momentum may alternate between contacts without end.
-  if (++iterates_ <= max_balanced) balance.mark_unbalanced(direction_.step, iterates_, searching);
+  if (++iterates_ <= max_balanced) balance.mark_unbalanced(direction_.step, iterates_, contact_error_, searching);
   for (std::size_t p = 0; p < searching.size(); ++p) searching[p] = searching[p] && active_[p];
   return line_search(rotations, std::move(searching));
 }
@@ -81,8 +81,12 @@ void NewtonSolver::update_accuracy() {
   active_.maximum(spacing, [&](std::size_t i) { return potential_.is_touched(i) ? problem_.solid.spacing[i] : 0; });
   active_.maximum(correction, [&](std::size_t i) { return problem_.squared_in_spacings(at_.u[i] - predicted_[i], i); });
   active_.take_square_roots(correction);
-  for (std::size_t p = 0; p < accuracy_.size(); ++p)
-    if (active_[p]) accuracy_[p] = problem_.accuracy_after(problem_.accuracy_in_contact(spacing[p]), correction[p]);
+  for (std::size_t p = 0; p < accuracy_.size(); ++p) {
+    if (!active_[p]) continue;
+    const double touched = problem_.accuracy_in_contact(spacing[p]);
+    accuracy_[p] = problem_.accuracy_after(touched, correction[p]);
+    contact_error_[p] = (accuracy_[p] - touched) * spacing[p];
+  }
 }
 
 void NewtonSolver::linearise_stale() {

@@ -8,6 +8,7 @@
 #include "mechanics/solver/conjugate_gradients.h"
 #include "mechanics/solver/finite_rotation.h"
 #include "mechanics/solver/incremental_potential.h"
+#include "mechanics/solver/momentum_balance.h"
 #include "mechanics/solver/predictor.h"
 #include "mechanics/solver/two_level_preconditioner.h"
 
@@ -35,6 +36,7 @@ class NewtonSolver {
 
   const StepProblem& problem_;
   IncrementalPotential potential_;
+  CentreWeights centres_;
   FiniteRotation rotation_;
   TwoLevelPreconditioner preconditioner_;
   ActiveIslands active_;  // islands that have not converged
@@ -42,6 +44,7 @@ class NewtonSolver {
   NewtonDirection direction_;
   std::vector<Vec3> trial_, predicted_;  // predicted_: where Newton's method began
   std::vector<double> accuracy_;         // per island, in spacings
+  std::vector<double> contact_error_;    // per island: accuracy beyond that of contact, model units
   std::vector<double> length_;           // per island: of the direction, largest over nodes, in spacings
   int iterates_ = 0;
   std::vector<double> moved_;  // per island: distance since its stiffness was computed, in spacings

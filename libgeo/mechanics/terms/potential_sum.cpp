@@ -141,9 +141,10 @@ void PotentialSum::update_matrices() {
 
 std::vector<PotentialSum::LinearisedTerm> PotentialSum::linearised_terms() const {
   std::vector<LinearisedTerm> terms;
-  for (std::size_t t = 0; t < terms_.size(); ++t)
+  for (std::uint32_t t = 0; t < terms_.size(); ++t)
     if (!idle_[t])
-      terms.push_back({.potential = terms_[t].potential,
+      terms.push_back({.id = t,
+                       .potential = terms_[t].potential,
                        .index = terms_[t].index,
                        .stencil = stencils_[t],
                        .force = force_[t],
@@ -155,7 +156,11 @@ Vec3 PotentialSum::force_at(std::size_t node) const {
   Vec3 sum = Vec3::Zero();
   for (const auto& matrix : matrices_) {
     const auto entries = matrix.stencils_of(node);
-    for (std::size_t k = 0; k < entries.size(); ++k) sum += matrix.weights_of(node)[k] * force_[entries[k].index];
+    if (entries.empty()) continue;
+    const double* weights = matrix.weights_of(node);
+    Vec3 sums[4] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // which do not wait for each other
+    for (std::size_t k = 0; k < entries.size(); ++k) sums[k % 4] += weights[k] * force_[entries[k].index];
+    sum += (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
   return sum;
 }
@@ -169,17 +174,12 @@ void PotentialSum::multiply_hessian(const std::vector<Vec3>& p) {
   for (const auto& matrix : matrices_)
     parallel_for(matrix.size(), terms_per_task, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        const auto entries = matrix.nodes_of(k);
-        // Four partial sums, which do not wait for each other.
-        Eigen::Vector4f sums[4] = {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(),
-                                   Eigen::Vector4f::Zero()};
-        std::size_t e = 0;
-        for (; e + 4 <= entries.size(); e += 4)
-          for (std::size_t c = 0; c < 4; ++c)
-            sums[c] += entries[e + c].weight * single_precision_[entries[e + c].index];
-        for (; e < entries.size(); ++e) sums[0] += entries[e].weight * single_precision_[entries[e].index];
-        const Eigen::Vector4f d = (sums[0] + sums[1]) + (sums[2] + sums[3]);
         const Hessian& hessian = hessian_[matrix.stencil(k)];
+        if (hessian.isZero(0)) {
+          product_[matrix.stencil(k)].setZero();
+          continue;
+        }
+        const Eigen::Vector4f d = weighted_sum_of(matrix.nodes_of(k), single_precision_);
         product_[matrix.stencil(k)] = d[0] * hessian.col(0) + d[1] * hessian.col(1) + d[2] * hessian.col(2);
       }
     });

@@ -21,6 +21,10 @@ class PotentialSum {
   PotentialSum(std::span<Potential* const> potentials, const std::vector<Vec3>& u);
   /// True if there are no terms.
   bool empty() const { return terms_.empty(); }
+  /// Number of terms.
+  std::size_t size() const { return terms_.size(); }
+  /// The stencil of a term.
+  Stencil stencil(std::size_t term) const { return stencils_[term]; }
   /// Pairs of different components that a stencil couples; `component` is per node. Pairs may
   /// repeat.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> coupled_components(
@@ -43,6 +47,7 @@ class PotentialSum {
   }
   /// A term that may act, with its derivatives by the last update_derivatives().
   struct LinearisedTerm {
+    std::uint32_t id;  ///< of the term, below size()
     const Potential* potential;
     std::uint32_t index;  ///< in the potential
     Stencil stencil;
@@ -60,8 +65,7 @@ class PotentialSum {
   /// update_derivatives() since.
   Vec3 hessian_product_at(std::size_t node) const {
     Eigen::Vector4f sum = Eigen::Vector4f::Zero();
-    for (const auto& matrix : matrices_)
-      for (const auto& entry : matrix.stencils_of(node)) sum += entry.weight * product_[entry.index];
+    for (const auto& matrix : matrices_) sum += weighted_sum_of(matrix.stencils_of(node), product_);
     return sum.head<3>().cast<double>();
   }
   /// Adds a 3×3 block per node, N/m, for a block preconditioner: the diagonal block of ∂²E/∂u².
@@ -79,6 +83,17 @@ class PotentialSum {
   std::vector<std::uint32_t> terms_to_evaluate(std::span<const std::uint32_t> island,
                                                const std::vector<char>& selected) const;
   void update_matrices();
+  // Σ weight · values[index] in four partial sums, which do not wait for each other.
+  static Eigen::Vector4f weighted_sum_of(std::span<const StencilMatrix::Entry> entries,
+                                         const std::vector<Eigen::Vector4f>& values) {
+    Eigen::Vector4f sums[4] = {Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(), Eigen::Vector4f::Zero(),
+                               Eigen::Vector4f::Zero()};
+    std::size_t e = 0;
+    for (; e + 4 <= entries.size(); e += 4)
+      for (std::size_t c = 0; c < 4; ++c) sums[c] += entries[e + c].weight * values[entries[e + c].index];
+    for (; e < entries.size(); ++e) sums[0] += entries[e].weight * values[entries[e].index];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  }
 
   const std::vector<Vec3>& start_;  // displacements where the substep began
   std::vector<Term> terms_;

@@ -4,6 +4,7 @@
 #include "simulation/interaction_integral.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -20,9 +21,9 @@ namespace {
 // In node spacings: the measures of the domain, and its least radius, for which some points lie
 // between it and the core.
 constexpr double core = 1, outer = 3, half_width = 1.5, least_outer = 1.5;
-// The cosine of the angle between a face's normal and the front above which the face only ends the
-// front: it takes no part in the plane across.
-constexpr double end_cosine = 0.9;
+// The slope of a face against the plane across the front, below which the face only ends the front:
+// it takes no part in that plane.
+constexpr double end_slope = 0.5;
 // With fewer points, the integral is a sum of few samples of fields that vary by their size.
 constexpr std::size_t least_points = 24;
 
@@ -51,6 +52,18 @@ namespace {
 
 using Domain = InteractionIntegral::Domain;
 
+// Whether a face is nearly across the front, by its corners in the frame of the tip. Slivers have no
+// normal to tell that by.
+bool ends_front(const std::array<Vec3, 3>& corners) {
+  double along = 0, across = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 edge = corners[(k + 1) % 3] - corners[k];
+    along = std::max(along, std::abs(edge.z()));
+    across = std::max(across, std::hypot(edge.x(), edge.y()));
+  }
+  return along < end_slope * across;
+}
+
 // The distance of the axis of a domain from the nearest surface that is not the front's own crack
 // and does more than end the front.
 double distance_to_others(const Complex& complex, const Domain& domain, std::int32_t crack) {
@@ -60,8 +73,7 @@ double distance_to_others(const Complex& complex, const Domain& domain, std::int
   for (const FaceId face : near) {
     if (complex.face(face).crack == crack) continue;
     const auto [a, b, c] = complex.corners(face);
-    const Vec3 normal = (b - a).cross(c - a);
-    if (std::abs(normal.dot(domain.axes.col(2))) > end_cosine * normal.norm()) continue;
+    if (ends_front({domain.local(a), domain.local(b), domain.local(c)})) continue;
     const Vec3 x = domain.local(closest_point_on_triangle(domain.tip.at, a, b, c));
     if (std::abs(x.z()) < domain.width) nearest = std::min(nearest, std::hypot(x.x(), x.y()));
   }

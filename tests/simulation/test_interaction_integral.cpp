@@ -132,3 +132,30 @@ TEST_CASE("slopes of the modes are the derivatives of their displacements", "[fr
     CHECK((slope - difference).norm() < 1e-7 * slope.norm() + 1e-15);
   }
 }
+
+TEST_CASE("stress intensities exist where the crack leaves slivers of the skin beside its front", "[fracture]") {
+  // A diagonal of the strip meets the side of the block at x = 0.4, where triangles of the skin meet.
+  const std::uint64_t seed = GENERATE(range(1, 25));
+  INFO("seed " << seed);
+  Random random(seed);
+  const double height = random.uniform(0.35, 0.65), spacing = 0.08;
+  const auto line = [&](double x) {
+    std::vector<Vec3> p;
+    for (const double z : {0.42, 0.3, 0.2, 0.1, -0.02}) p.push_back({x, height, z});
+    return p;
+  };
+  SampleOptions sampling;
+  sampling.spacing = spacing;
+  sampling.levels = 1;
+  sampling.seed = seed;
+  const TriangleMesh mesh = make_block({1, 1, 0.4}, 0.1);
+  Body body = build_body(Complex::from_skin(mesh), sample_nodes(mesh, sampling));
+  FrontState front = begin_front(line(-0.1), false, 1);
+  split(body, front, line(0.5));
+  const GrowingFront tip = growing(front, std::vector<Vec3>(front.points.size(), Vec3(0, 1, 0)));
+  const Solid solid(body, Materials(Material{}));
+  const State rest{.displacement = std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), .velocity = {}};
+  const InteractionIntegral integral(body, solid, rest);
+  for (std::size_t i = 0; i < tip.size(); ++i)
+    if (tip.live(i)) CHECK(integral.at(tip, i, Mat3::Identity()).has_value());
+}

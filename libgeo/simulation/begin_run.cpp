@@ -1,8 +1,11 @@
 // begin_run() of kerf/simulation.h. Order: sample and build the body, insert the prescored cracks,
 // then assign velocities. Nodes that a crack inserts belong to the body of their donor.
 #include <algorithm>
+#include <cmath>
 #include <utility>
+#include <vector>
 
+#include "body/locate.h"
 #include "kerf/crack.h"
 #include "kerf/error.h"
 #include "kerf/simulation.h"
@@ -47,6 +50,33 @@ CrackEdit sheet_edit(const Prescoring& to, const SceneScore& score, std::int32_t
   return edit_to(std::move(scored));
 }
 
+// The points of a front, as many in each step.
+std::vector<std::vector<Vec3>> rows_of(const Front& front) {
+  std::vector<std::vector<Vec3>> rows{front.steps.at(0)};
+  for (std::size_t k = 1; k < front.steps.size(); ++k)
+    rows.push_back(resample_front(front.steps[0], front.steps[k], front.closed));
+  return rows;
+}
+
+// The same, for a front that may grow by its load: it does so at points that lie in the material.
+// Where its last step has none, segments are divided into parts of half a spacing.
+std::vector<std::vector<Vec3>> rows_to_grow(const Front& front, const Body& body) {
+  std::vector<std::vector<Vec3>> rows = rows_of(front);
+  const auto is_in_material = [&](const Vec3& x) { return is_inside(body.surface, x); };
+  if (std::any_of(rows.back().begin(), rows.back().end(), is_in_material)) return rows;
+  const std::size_t points = rows[0].size(), segments = front.closed ? points : points - 1;
+  std::vector<std::vector<Vec3>> finer(rows.size());
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::size_t next = (i + 1) % points;
+    double length = 0;
+    for (const auto& row : rows) length = std::max(length, (row[next] - row[i]).norm());
+    const double parts = i < segments ? std::max(1.0, std::ceil(length / (0.5 * body.finest_spacing))) : 1;
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (int k = 0; k < parts; ++k) finer[r].push_back(rows[r][i] + k / parts * (rows[r][next] - rows[r][i]));
+  }
+  return finer;
+}
+
 // Inserts the scene's prescored cracks: fronts step by step, sheets whole. Where bodies break by
 // stress, a front that ends in the material goes on by its load.
 void prescore(const Prescoring& to, const Progress& progress) {
@@ -63,16 +93,18 @@ void prescore(const Prescoring& to, const Progress& progress) {
         throw GeometryError("the prescored sheet '" + front.name + "' cannot be inserted");
       continue;
     }
-    FrontState state = begin_front(front.steps.at(0), front.closed, crack), before = state;
-    for (std::size_t k = 1; k < front.steps.size(); ++k) {
+    const bool may_grow = scene.fracture.on && scene.fracture.of_body(scene.scores[s].body).has_fronts();
+    const auto rows = may_grow ? rows_to_grow(front, run.body) : rows_of(front);
+    FrontState state = begin_front(rows[0], front.closed, crack), before = state;
+    for (std::size_t k = 1; k < rows.size(); ++k) {
       report(progress, "prescoring", s, scene.scores.size());
-      auto written = writer.write(state, resample_front(front.steps[0], front.steps[k], front.closed), unused);
+      auto written = writer.write(state, rows[k], unused);
       if (!written)
         throw GeometryError("step " + std::to_string(k) + " of the prescored front '" + front.name +
                             "' cannot be made");
       before = std::exchange(state, std::move(written->front));
     }
-    if (!scene.fracture.on || !scene.fracture.of_body(scene.scores[s].body).has_fronts()) continue;
+    if (!may_grow) continue;
     if (auto grows = growing_after(before, std::move(state))) run.state.fracture.fronts.push_back(std::move(*grows));
   }
 }

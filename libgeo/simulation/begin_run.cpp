@@ -59,7 +59,7 @@ std::vector<std::vector<Vec3>> rows_of(const Front& front) {
 }
 
 // The same, for a front that may grow by its load: it does so at points that lie in the material.
-// Where its last step has none, segments are divided into parts of half a spacing.
+// Where its last step has none, segments are divided into parts of a spacing.
 std::vector<std::vector<Vec3>> rows_to_grow(const Front& front, const Body& body) {
   std::vector<std::vector<Vec3>> rows = rows_of(front);
   const auto is_in_material = [&](const Vec3& x) { return is_inside(body.surface, x); };
@@ -70,7 +70,7 @@ std::vector<std::vector<Vec3>> rows_to_grow(const Front& front, const Body& body
     const std::size_t next = (i + 1) % points;
     double length = 0;
     for (const auto& row : rows) length = std::max(length, (row[next] - row[i]).norm());
-    const double parts = i < segments ? std::max(1.0, std::ceil(length / (0.5 * body.finest_spacing))) : 1;
+    const double parts = i < segments ? std::max(1.0, std::ceil(length / body.finest_spacing)) : 1;
     for (std::size_t r = 0; r < rows.size(); ++r)
       for (int k = 0; k < parts; ++k) finer[r].push_back(rows[r][i] + k / parts * (rows[r][next] - rows[r][i]));
   }

@@ -43,24 +43,25 @@ double resistance(const Strength& own, std::uint64_t seed, const Body& body, con
   return stress * strength_factor(own, seed, body.surface.extent().diagonal(), x);
 }
 
-// Averages a tensor along the front twice: (T_i−1 + 2 T_i + T_i+1) / 4, live neighbours only.
-void smooth_along(const GrowingFront& g, std::vector<Mat3>& tensor) {
+// Averages values along the front twice: (v_i−1 + 2 v_i + v_i+1) / 4, live neighbours only.
+template <class Value>
+void smooth_along(const GrowingFront& g, std::vector<Value>& value) {
   const std::size_t n = g.size();
   for (int pass = 0; pass < 2; ++pass) {
-    const auto old = tensor;
+    const auto old = value;
     for (std::size_t i = 0; i < n; ++i) {
       if (!g.live(i)) continue;
       double total = 2;
-      tensor[i] = 2 * old[i];
+      value[i] = 2 * old[i];
       for (const bool after : {false, true}) {
         if (!g.front.closed && (after ? i + 1 == n : i == 0)) continue;
         const std::size_t j = after ? (i + 1) % n : (i + n - 1) % n;
         if (g.live(j)) {
-          tensor[i] += old[j];
+          value[i] += old[j];
           total += 1;
         }
       }
-      tensor[i] /= total;
+      value[i] /= total;
     }
   }
 }
@@ -150,13 +151,22 @@ struct DueGrowth {
 DueGrowth add_growth(const FractureInput& in, const FrontLoad& load, GrowingFront& g) {
   const double fastest = in.options.speed * rayleigh_speed(in.solid.materials().of(load.node));
   DueGrowth due;
+  std::vector<double> spacing(g.size(), 0), growth(g.size(), 0);
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    if (!g.live(i)) continue;
+    spacing[i] = spacing_at(in.body, g.front.points[i].position);
+    const double ratio = load.ratio[i];
+    if (ratio > 1) growth[i] = std::min(spacing[i], in.dt * fastest * (1 - 1 / (ratio * ratio)));
+  }
+  // Nodes do not resolve a front that is bent within a spacing: neighbours move together.
+  smooth_along(g, growth);
   for (std::size_t i = 0; i < g.size(); ++i) {
     if (!g.live(i)) continue;
     due.in_air = false;
     const Vec3& x = g.front.points[i].position;
-    const double here = spacing_at(in.body, x), ratio = load.ratio[i];
+    const double here = spacing[i];
     due.spacing = std::min(due.spacing, here);
-    g.owed[i] = ratio > 1 ? std::min(here, g.owed[i] + in.dt * fastest * (1 - 1 / (ratio * ratio))) : 0;
+    g.owed[i] = growth[i] > 0 ? std::min(here, g.owed[i] + growth[i]) : 0;
     if (!load.resolved[i] && may_break(in.options, x) && is_ligament(in.body.surface, tip_frame(g, i), here))
       g.owed[i] = std::max(g.owed[i], least_growth * here);
     due.largest = std::max(due.largest, g.owed[i]);

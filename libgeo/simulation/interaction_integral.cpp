@@ -52,8 +52,8 @@ namespace {
 
 using Domain = InteractionIntegral::Domain;
 
-// Whether a face is nearly across the front, by its corners in the frame of the tip. Slivers have no
-// normal to tell that by.
+// Whether a face is nearly across the front, by its corners in the frame of the tip. Slivers have
+// no normal to tell that by.
 bool ends_front(const std::array<Vec3, 3>& corners) {
   double along = 0, across = 0;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -134,7 +134,7 @@ TEST_CASE("slopes of the modes are the derivatives of their displacements", "[fr
 }
 
 TEST_CASE("stress intensities exist where the crack leaves slivers of the skin beside its front", "[fracture]") {
-  // A diagonal of the strip meets the side of the block at x = 0.4, where triangles of the skin meet.
+  // A diagonal of the strip meets the side of the block at x = 0.4, on lines of the skin.
   const std::uint64_t seed = GENERATE(range(1, 25));
   INFO("seed " << seed);
   Random random(seed);

@@ -97,7 +97,7 @@ void SkinLoads::begin_step(const TimeStep& step, const Body& body, const Solid& 
 }
 
 Vec3 SkinLoads::displacement(const Term& term, const std::vector<Vec3>& u) const {
-  return weighted_sum(weights_->stencil(term.vertex), u) + weights_->rotated(term.vertex);
+  return weighted_sum(weights_->stencil(term.vertex), u);
 }
 
 void SkinLoads::begin_substep(const std::vector<Vec3>& u, double from, double to) {
@@ -118,14 +118,14 @@ Vec3 SkinLoads::force(const Term& term, const Vec3& d) const {
 
 double SkinLoads::energy(std::size_t k, const Vec3& d) const {
   const Term& t = acting_[k];
-  const Vec3 moved = d + weights_->rotated(t.vertex), pull = force(t, moved);
-  if (!actions_[t.load].is_support) return -pull.dot(moved);
+  const Vec3 pull = force(t, d);
+  if (!actions_[t.load].is_support) return -pull.dot(d);
   return pull.squaredNorm() / (2 * t.stiffness);
 }
 
 Potential::Derivatives SkinLoads::derivatives(std::size_t k, const Vec3& d) const {
   const Term& t = acting_[k];
-  Derivatives result{.force = force(t, d + weights_->rotated(t.vertex)), .hessian = Mat3::Zero()};
+  Derivatives result{.force = force(t, d), .hessian = Mat3::Zero()};
   if (!actions_[t.load].is_support) return result;
   for (int axis = 0; axis < 3; ++axis)
     if (axes_of(t.load)[axis]) result.hessian(axis, axis) = t.stiffness;

@@ -177,3 +177,49 @@ TEST_CASE("a prescored front goes on where the load passes its toughness, and no
   CHECK_FALSE(grows(1.1 * k, 9));
   CHECK(grows(0.9 * k, 2));  // a front whose points are all outside the material
 }
+
+TEST_CASE("a notched beam in three-point bending breaks at the handbook's load, with the energy that it is given",
+          "[fracture]") {
+  // K = P S / (B W^1.5) f(a / W), with f(0.5) = 2.66 (Tada, Paris and Irwin 2000). The notch lies on lines of the skin.
+  const double height = 0.04, span = 0.16, thickness = 0.004, toughness = 1e6;
+  const double load = toughness * thickness * std::pow(height, 1.5) / (span * 2.66);
+  Scene s;
+  s.bodies.resize(1);
+  s.bodies[0].sampling.spacing = height / 16;
+  s.bodies[0].sampling.levels = 1;
+  s.gravity = Vec3::Zero();
+  s.material = {.young = 3e9, .poisson = 0.3, .density = 1200, .damping = 2000};
+  s.frame_rate = 2000;
+  s.dt = 2.5e-4;
+  s.accuracy = 1e-7;
+  s.self_contact = false;
+  s.fracture.on = true;
+  s.fracture.strength = 1e12;
+  s.fracture.toughness = toughness;
+  s.fracture.variation = 0;
+  s.fracture.max_cracks = 0;
+  Front notch;
+  for (const double y : {-0.002, height / 2})
+    notch.steps.push_back({{0.09, y, -2e-4}, {0.09, y, thickness / 2}, {0.09, y, thickness + 2e-4}});
+  s.scores = {{.front = notch}};
+  for (const double z : {0.0, thickness})
+    s.supports.push_back({.lo = {-far, -far, z - e}, .hi = {far, far, z + e}, .axes = {.z = true}});
+  for (const double x : {0.01, 0.17})
+    s.supports.push_back({.lo = {x - 1.01e-3, -e, -far}, .hi = {x + 1.01e-3, e, far}, .axes = {.y = true}});
+  s.supports.push_back({.lo = {0.09 - 1.01e-3, height - e, -far},
+                        .hi = {0.09 + 1.01e-3, height + e, far},
+                        .axes = {.x = true, .y = true}});
+  s.supports.back().motion.keys = {{.time = 0, .position = Vec3::Zero()}, {.time = 0.02, .position = {0, -8e-4, 0}}};
+  Simulation run(s, make_block({0.18, height, thickness}, 0.001));
+  double work = 0, force = 0;
+  for (int frame = 0; frame < 24; ++frame) {
+    const FrameStats stats = run.advance_frame();
+    work += stats.work;
+    INFO("frame " << frame << ": " << stats.energy << " + " << stats.kinetic << " J of " << work);
+    CHECK(stats.energy + stats.kinetic < 1.005 * work);
+    if (stats.fracture.advanced > 0) break;
+    force = stats.support_force.at(4).y();
+  }
+  INFO("force over the handbook's: " << force / load);
+  CHECK(std::abs(force / load - 1) < 0.05);
+}

@@ -21,10 +21,11 @@ class Stopped(Exception):
 
 @dataclasses.dataclass
 class Model:
-    """A closed triangle mesh: vertices (n, 3) float64, triangles (m, 3) int32."""
+    """A closed triangle mesh: vertices (n, 3) float64, triangles (m, 3) int32, weights of vertices."""
 
     vertices: numpy.ndarray
     triangles: numpy.ndarray
+    density: typing.Optional[numpy.ndarray] = None  # (n,): cells are many where it is high
 
 
 @dataclasses.dataclass

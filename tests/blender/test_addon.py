@@ -301,6 +301,30 @@ def test_chips():
     assert faces > 2 * sum(len(piece.data.polygons) for piece in scenes.check_pieces(found, 5))
 
 
+def test_density():
+    """A vertex group says where pieces are small; an object without it is refused."""
+    found = box()
+    select(found)
+    with_cuts = found.modifiers.new("fine", "SUBSURF")
+    with_cuts.subdivision_type, with_cuts.levels = "SIMPLE", 3
+    bpy.ops.object.modifier_apply(modifier="fine")
+    group = found.vertex_groups.new(name="small")
+    middle = sum(v.co.z for v in found.data.vertices) / len(found.data.vertices)
+    for vertex in found.data.vertices:
+        group.add([vertex.index], 1.0 if vertex.co.z > middle else 0.05, "REPLACE")
+    fracture(pieces=24, seed=3, jagged=0, density_group="small", hide_original=False)
+    pieces = scenes.check_pieces(found, 24)
+    high = sum((found.matrix_world.inverted() @ piece.matrix_world.translation).z > middle for piece in pieces)
+    assert high > 16, high
+    select(found)
+    try:
+        fracture(pieces=4, density_group="none", hide_original=False)
+    except RuntimeError as error:
+        assert "no vertex group 'none'" in str(error), error
+    else:
+        raise AssertionError("a group that is not there is taken")
+
+
 def test_patterns():
     found = box()
     select(found)

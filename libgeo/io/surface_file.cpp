@@ -37,11 +37,15 @@ void add_named_materials(SurfaceFile& file, const std::string& name) {
   add_mtl_library(file.mesh, {materials}, name, file.notes);
 }
 
-// Whether a file holds a scan, and not nodes.
+// Whether a file holds a scan, and not nodes. The ending of its name tells text with points from an
+// OFF file without a keyword; all other content decides by itself.
 bool is_scan(const std::string& bytes, const std::string& name) {
   constexpr std::size_t header = 4096;
-  return holds_points(bytes, name) && bytes.substr(0, header).find("radius") == std::string::npos &&
-         !looks_like_kerf(bytes) && other_format(bytes, name).what.empty();
+  const std::string head = bytes.substr(0, header);
+  if (!holds_points(bytes, name) || head.find("radius") != std::string::npos) return false;
+  const bool is_off = looks_like_off(bytes) && head.find("OFF") != std::string::npos;
+  return !is_off && !is_exact_binary_stl(bytes) && !looks_like_obj(bytes) && !looks_like_kerf(bytes) &&
+         other_format(bytes, name).what.empty();
 }
 
 // Texture coordinates that name no place in an image become 0: those that are not finite, and those
@@ -129,8 +133,7 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
       looks_like_obj(text) || looks_like_off(text) || text.rfind("ply", 0) == 0)
     return parse_surface(text, name);
   SurfaceFile file;
-  const bool plain = !is_exact_binary_stl(bytes) && !looks_like_off(bytes) && !looks_like_obj(bytes);
-  if (plain && is_scan(bytes, name))
+  if (is_scan(bytes, name))
     throw InputError(name + ": has points without faces; make a solid of it: kerf-repair " + name +
                      " -o solid.ply, in Python kerf.reconstruct(*kerf.read_points(path))");
   if (is_exact_binary_stl(bytes))  // whatever its header begins with

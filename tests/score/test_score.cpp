@@ -59,7 +59,7 @@ TEST_CASE("Each pattern parts a ball into as many pieces as wanted", "[score]") 
       }
 }
 
-TEST_CASE("A search can be stopped at each of its reports", "[score]") {
+TEST_CASE("A search can be stopped at any of its reports", "[score]") {
   const Complex block = Complex::from_skin(make_block({2, 1, 1}, 0.25));
   ScoreOptions options;
   options.jagged.amplitude = 0.02;
@@ -70,7 +70,7 @@ TEST_CASE("A search can be stopped at each of its reports", "[score]") {
     return ++reports > 0;
   });
   CHECK(reports >= 8);  // the attempt, six stages of refinement, a round of displacement
-  for (std::size_t last = 1; last <= reports; ++last) {
+  for (std::size_t last = 1; last <= reports; last += 1 + reports / 40) {  // there are thousands
     std::size_t now = 0;
     const auto stop = [&](std::string_view, std::size_t, std::size_t) { return ++now < last; };
     CHECK_THROWS_AS(make_score(block, options, stop), Interrupted);

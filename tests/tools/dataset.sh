@@ -150,7 +150,7 @@ expect 1 "no fracture could be made" kerf-dataset -q open.off --seeds 2 -o none
 kerf-dataset -q list.txt --seeds 2 --pieces 3 -o mixed 2>said.txt || fail "a complete data set: $(cat said.txt)"
 
 # Refusals before any work; nothing is left.
-for options in "--pieces 1" "--pieces 9:3" "--pieces 2.5" "--pieces x" "--jagged 1" "--jagged nan" "--jagged 0:0.1:2" "--seeds 0" "--patterns red" "--patterns voronoi,voronoi" "--patterns curves" "--split 80,10,11" "--split 1" "--shard 0/2" "--shard 3/2" "--shard -1/2" "--per-shard 0" "--attempts 0" "--bumps 0" "--chips -1" "--chips 1:2.5" "--edge-detail 1" "--chip-size 0.2" "--edge-width 0.1" "--chips 3 --chip-size 0"; do
+for options in "--pieces 1" "--pieces 9:3" "--pieces 2.5" "--pieces x" "--jagged 1" "--jagged nan" "--jagged 0:0.1:2" "--seeds 0" "--patterns red" "--patterns voronoi,voronoi" "--patterns curves" "--split 80,10,11" "--split 1" "--shard 0/2" "--shard 3/2" "--shard -1/2" "--per-shard 0" "--attempts 0" "--bumps 0" "--chips -1" "--chips 1:2.5" "--edge-detail 1" "--chip-size 0.2" "--edge-width 0.1" "--chip-size 0 --chips 3"; do
   expect 2 "${options%% *}" kerf-dataset apple.ply $options -o x
 done
 expect 2 "give a folder" kerf-dataset apple.ply

@@ -172,8 +172,9 @@ int main(int argc, char** argv) {
     const std::size_t bad = totals.failed;
     if (bad > 0)
       t.say("kerf-dataset: " + tool::counted(bad, "fracture") + " failed, " +
-            tool::counted(totals.refused_models, "model") + " refused; reasons are in the records" +
-            (totals.complete ? " and in " + t.output_path + "/failed.txt" : ""));
+            tool::counted(totals.refused_models, "model") + " refused" +
+            (totals.refused_models > 0 && !w.repair ? ", which --repair may mend" : "") +
+            "; reasons are in the records" + (totals.complete ? " and in " + t.output_path + "/failed.txt" : ""));
     if (t.verbose)
       t.say("kerf-dataset: " + tool::counted(totals.made, "fracture") + " made, " + std::to_string(totals.found) +
             " were there, " + tool::rounded(totals.seconds) + " s" + (totals.complete ? "; complete" : ""));

@@ -99,7 +99,9 @@ void Arrangement::meet_itself() {
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles)
     boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
+  const PauseOfThread pause_here(pause_);
   const auto keep_meeting = [&](AabbTree::Pairs& pairs) {
+    pause_here();
     std::erase_if(pairs, [&](const auto& pair) {
       const auto s = corners_of(pair.first), t = corners_of(pair.second);
       Signs sign;

@@ -192,7 +192,8 @@ class Inspection {
   }
 
   // Two new faces that cross or are too near. The first pair along the longest axis is reported.
-  Fault find_crossing_among_new() const {
+  Fault find_crossing_among_new(const crack::Pause& pause) const {
+    const crack::PauseOfThread pause_here(pause);
     Box3 all;
     std::vector<Box3> boxes;
     boxes.reserve(count_);
@@ -207,6 +208,7 @@ class Inspection {
       return x != y ? x < y : i < j;
     };
     const auto keep_faults = [&](AabbTree::Pairs& pairs) {
+      pause_here();
       std::erase_if(pairs, [&](auto& pair) {
         if (before(pair.second, pair.first)) std::swap(pair.first, pair.second);
         const TestedFace &a = faces_[pair.first], &b = faces_[pair.second];
@@ -297,7 +299,7 @@ Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardCon
   if (!fault) fault = find_radial_fault(complex, edit, context.moved);
   if (!fault) fault = inspection.find_crossing_with_kept(pause);
   pause_now();
-  if (!fault) fault = inspection.find_crossing_among_new();
+  if (!fault) fault = inspection.find_crossing_among_new(pause);
   pause_now();
   if (!fault) fault = find_reentry(complex, edit, context.exits);
   return fault;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <thread>
 
 namespace geo::crack {
 
@@ -13,5 +14,21 @@ using Pause = std::function<void()>;
 inline void pause_before(std::size_t i, const Pause& pause) {
   if (pause && i % 256 == 0) pause();
 }
+
+/// Pauses in work on several threads: on the thread that made it alone, so that `pause` needs no
+/// lock.
+class PauseOfThread {
+ public:
+  /// For this thread. `pause` must outlive it.
+  explicit PauseOfThread(const Pause& pause) : pause_(pause), thread_(std::this_thread::get_id()) {}
+  /// Pauses where that is this thread.
+  void operator()() const {
+    if (pause_ && std::this_thread::get_id() == thread_) pause_();
+  }
+
+ private:
+  const Pause& pause_;
+  const std::thread::id thread_;
+};
 
 }  // namespace geo::crack

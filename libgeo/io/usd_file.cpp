@@ -155,7 +155,9 @@ void add_described(std::ostream& out, RunMaterials& materials) {
     out << std::string(4 * depth, ' ') << text << '\n';
     if (text == "{") ++depth;
   };
-  for (const std::string& group : materials.groups) {
+  std::vector<std::string> all = materials.groups;
+  all.push_back("crack");
+  for (const std::string& group : all) {
     PreviewMaterial described = plain_material(group);
     for (const PreviewMaterial& known : materials.library.materials)
       if (known.name == group) described = known;
@@ -240,9 +242,12 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     out << "    }\n";
   }
   out << "\n    def Scope \"materials\"\n    {\n";
-  if (materials.groups.empty()) add_material(out, "skin", "(0.75, 0.22, 0.04)");
-  add_described(out, materials);
-  add_material(out, "crack", "(0.86, 0.66, 0.2)");
+  if (materials.groups.empty()) {
+    add_material(out, "skin", "(0.75, 0.22, 0.04)");
+    add_material(out, "crack", "(0.86, 0.66, 0.2)");
+  } else {
+    add_described(out, materials);
+  }
   if (run.obstacles) add_material(out, "obstacle", "(0.42, 0.43, 0.45)");
   out << "    }\n}\n";
 }

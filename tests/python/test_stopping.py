@@ -24,7 +24,7 @@ class Stopping(unittest.TestCase):
         cls.cut = cut_model()
         cls.fine = kerf.shapes.pumpkin(160)
         cls.model = kerf.shapes.pumpkin(72)  # of 1e5 triangles
-        cls.wall = kerf.score(cls.model, pieces=30, jagged=0.01, frequency=40, seed=5)
+        cls.wall = kerf.score(cls.model, pieces=30, jagged=0.01, frequency=12, seed=5)
         ball = kerf.shapes.sphere(90)
         cls.twice = kerf.Mesh(np.r_[ball.vertices, ball.vertices + 0.3], np.r_[ball.faces, ball.faces.astype(np.int64) + len(ball.vertices)])
         cls.dented = kerf.Mesh(*(lambda m: (m.vertices * (1 + 0.2 * np.sin(9 * m.vertices[:, :1])), m.faces))(kerf.shapes.sphere(100)))

@@ -1,4 +1,4 @@
-// What every full score promises of the pieces that it makes.
+// The promises of every full score about the pieces that it makes.
 #pragma once
 
 #include <catch2/catch.hpp>
@@ -8,8 +8,8 @@
 #include "kerf/complex.h"
 #include "kerf/pieces.h"
 
-/// Checks that pieces are closed, cross nothing, have their recorded volumes, which sum to `volume`,
-/// and are on either side of each wall: of each face of a crack above `last_crack`.
+/// Checks that pieces are closed and cross nothing, and that their volumes are as recorded and sum
+/// to `volume`. Each face of a crack above `last_crack` is a wall between two of them.
 inline void check_sound_pieces(const geo::Complex& cut, const geo::Pieces& pieces, double volume,
                                std::int32_t last_crack) {
   double sum = 0;

@@ -359,6 +359,13 @@ def touching_bodies():
 # ---- Data sets
 
 
+@case(", which --repair may mend")
+def refused_models():
+    box("open.obj", ((0, 0, 0), 1), faces=slice(0, 5))
+    wanted = "kerf-dataset open.obj --seeds 1 --pieces 2 --split 100,0,0"
+    run(f"{wanted} {said(f'{wanted} -o refused', r'1 model refused, which (--repair) may mend')[1]} -o mended")
+
+
 @case("give more, or another --split")
 def empty_sets():
     run("kerf-model apple --frequency 3 -o a.ply && cp a.ply b.ply && cp a.ply c.ply")

@@ -2,13 +2,17 @@
 not installed (with_module.py, with_tools.py). Nothing here needs Blender."""
 
 import dataclasses
+import re
 import typing
 
 import numpy
 
 
 class Refused(Exception):
-    """The model cannot be used as it is; the text is Kerf's sentence."""
+    """The model cannot be used as it is; the text is Kerf's sentence, with the remedy of the add-on in place of Kerf's own."""
+
+    def __init__(self, sentence):
+        super().__init__(re.sub(r"or try (kerf-repair|kerf\.Solid\.repaired\(\))", "or press Repair in the Kerf tab", sentence))
 
 
 class Failed(Exception):

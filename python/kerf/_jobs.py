@@ -21,6 +21,8 @@ def _slice(self, planes, progress=None, **options):
     planes: a Plane, or a list; what remains is in front of all. As slice_plane(cap=True) of trimesh. options: those of cut().
     Raises InputError where the mesh is no valid model, GeometryError as cut(), Interrupted.
     """
+    if not isinstance(self, _kerf.Mesh):  # called through the class
+        raise TypeError(f"slice() is a method of Mesh, and got a {type(self).__name__}")
     all_planes = [planes] if isinstance(planes, _kerf.Plane) else list(planes)
     for plane in all_planes:
         if not isinstance(plane, _kerf.Plane):

@@ -471,7 +471,7 @@ def test_refused():
     select(first, second)
     bpy.ops.object.join()
     select(first)
-    refused(bpy.ops.object.kerf_fracture, "intersect")
+    refused(bpy.ops.object.kerf_fracture, "press Repair in the Kerf tab")
     assert bpy.ops.object.kerf_repair() == {"FINISHED"}
     assert abs(scenes.volume(first) - 15) < 1e-5
     assert bpy.ops.object.kerf_repair(voxel=0.01) == {"FINISHED"}

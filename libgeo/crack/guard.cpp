@@ -149,7 +149,7 @@ class Inspection {
     std::vector<FaceId> removed = edit_.removed_faces, looked_up;
     std::sort(removed.begin(), removed.end());
     for (std::size_t at = 0, next; at < families_.size(); at = next) {
-      crack::pause_before(0, pause);
+      crack::pause_now(pause);
       // Families with the same list of near faces are tested together.
       const Family& family = families_[at];
       for (next = at + 1; next < families_.size() && !family.near.empty() &&
@@ -290,17 +290,16 @@ class Inspection {
 
 Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context,
                  const crack::Pause& pause) {
-  const auto pause_now = [&] { crack::pause_before(0, pause); };
-  pause_now();
+  crack::pause_now(pause);
   const Inspection inspection(complex, edit, context);
   Fault fault = inspection.find_flipped();
   if (!fault) fault = inspection.find_coincident();
-  pause_now();
+  crack::pause_now(pause);
   if (!fault) fault = find_radial_fault(complex, edit, context.moved);
   if (!fault) fault = inspection.find_crossing_with_kept(pause);
-  pause_now();
+  crack::pause_now(pause);
   if (!fault) fault = inspection.find_crossing_among_new(pause);
-  pause_now();
+  crack::pause_now(pause);
   if (!fault) fault = find_reentry(complex, edit, context.exits);
   return fault;
 }

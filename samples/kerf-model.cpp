@@ -1,7 +1,6 @@
 // kerf-model: writes the procedural models of the samples, and fronts that halve a model.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include <kerf/error.h>
@@ -47,14 +46,6 @@ geo::TriangleMesh make_bowl(int frequency) {
     add(outer + rim + k, inner + rim + l, inner + rim + k);
   }
   return mesh;
-}
-
-geo::Vec3 size_of(const std::string& text) {
-  double x = 0, y = 0, z = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &z, &rest) != 3)
-    throw tool::UsageError("--size '" + text + "' is not X,Y,Z");
-  return {x, y, z};
 }
 
 }  // namespace
@@ -123,7 +114,7 @@ int main(int argc, char** argv) {
     else if (kind == "bowl")
       mesh = make_bowl(std::max(1, frequency));
     else if (kind == "block")
-      mesh = geo::make_block(size_of(size), edge);
+      mesh = geo::make_block(tool::parse_vector("--size", size), edge);
     else if (kind == "plate")
       mesh = geo::make_block({2, 1, 0.12}, edge);
     else if (kind == "letter" && text.size() == 1)

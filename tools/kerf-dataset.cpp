@@ -15,9 +15,10 @@ namespace {
 
 struct Command {
   std::vector<std::string> models;
-  std::string patterns = "voronoi", pieces = "20", jagged = "0", split = "80,10,10", shard = "1/1", layout = "npz";
+  std::string patterns = "voronoi", pieces = "20", jagged = "0", chips = "0", edge_detail = "0", split = "80,10,10",
+              shard = "1/1", layout = "npz";
   int seeds = 100, per_shard = 100, attempts = 10;
-  double bumps = 4;
+  double bumps = 4, chip_size = 0.25, edge_width = 0.03;
   bool rotate = false, single = false, repair = false, strict = false;
 };
 
@@ -53,6 +54,21 @@ std::pair<std::size_t, std::size_t> shard(const std::string& text) {
   return {index, count};
 }
 
+// The options for chips and detail at edges.
+void take_edges(const Command& w, dataset::Settings& s) {
+  s.chips = range("--chips", w.chips);
+  s.edge_detail = range("--edge-detail", w.edge_detail);
+  if (!(s.chips.low >= 0 && s.chips.high <= 100000) || s.chips.low != std::floor(s.chips.low) ||
+      s.chips.high != std::floor(s.chips.high))
+    throw tool::UsageError("--chips must be whole numbers between 0 and 100000");
+  if (!(s.edge_detail.low >= 0 && s.edge_detail.high < 1))
+    throw tool::UsageError("--edge-detail must be fractions of the diagonal, at least 0 and below 1");
+  if (!(w.chip_size >= 0.01 && w.chip_size <= 1)) throw tool::UsageError("--chip-size must be from 0.01 to 1");
+  if (!(w.edge_width >= 0.001 && w.edge_width <= 1)) throw tool::UsageError("--edge-width must be from 0.001 to 1");
+  s.chip_size = w.chip_size;
+  s.edge_width = w.edge_width;
+}
+
 dataset::Settings settings_of(const Command& w, std::uint64_t seed) {
   dataset::Settings s;
   std::string name;
@@ -86,6 +102,7 @@ dataset::Settings settings_of(const Command& w, std::uint64_t seed) {
   s.seeds = w.seeds;
   s.bumps = w.bumps;
   s.attempts = w.attempts;
+  take_edges(w, s);
   s.per_shard = w.per_shard;
   s.rotate = w.rotate;
   s.single = w.single;
@@ -122,6 +139,12 @@ int main(int argc, char** argv) {
   t.option("--jagged", w.jagged,
            "Height of bumps as a fraction of the diagonal; A:B: a number between, drawn for each");
   t.option("--bumps", w.bumps, "How many of the largest bumps fit along the diagonal; more make finer walls");
+  t.option("--edge-detail", w.edge_detail,
+           "Height of finer bumps where walls meet the skin, as a fraction of the diagonal; A:B as above");
+  t.option("--edge-width", w.edge_width, "How deep under the skin these go, as a fraction of the diagonal");
+  t.option("--chips", w.chips, "Small pieces that break off edges, beside --pieces; A:B as above");
+  t.option("--chip-size", w.chip_size,
+           "Length of a chip along its edge, as a fraction of the cube root of the mean piece's volume");
   t.option("--attempts", w.attempts, "How many patterns are tried for the number of pieces");
   t.flag("--rotate", w.rotate, "Rotate each piece at random about its centroid, which becomes the origin");
   t.flag("--repair", w.repair, "Repair models first, as kerf-repair does");
@@ -136,6 +159,8 @@ int main(int argc, char** argv) {
     if (w.models.empty()) throw tool::UsageError("MODELS is required");
     if (t.output_path.empty() || t.output_path == "-") throw tool::UsageError("give a folder with -o");
     t.require_ending();
+    for (const auto& [option, companion] : {std::pair("--edge-width", "--edge-detail"), {"--chip-size", "--chips"}})
+      t.require(option, companion);
     const auto settings = settings_of(w, t.seed);
     const auto [index, count] = shard(w.shard);
     const auto models = dataset::list_models(w.models);
@@ -147,8 +172,9 @@ int main(int argc, char** argv) {
     const std::size_t bad = totals.failed;
     if (bad > 0)
       t.say("kerf-dataset: " + tool::counted(bad, "fracture") + " failed, " +
-            tool::counted(totals.refused_models, "model") + " refused; reasons are in the records" +
-            (totals.complete ? " and in " + t.output_path + "/failed.txt" : ""));
+            tool::counted(totals.refused_models, "model") + " refused" +
+            (totals.refused_models > 0 && !w.repair ? ", which --repair may mend" : "") +
+            "; reasons are in the records" + (totals.complete ? " and in " + t.output_path + "/failed.txt" : ""));
     if (t.verbose)
       t.say("kerf-dataset: " + tool::counted(totals.made, "fracture") + " made, " + std::to_string(totals.found) +
             " were there, " + tool::rounded(totals.seconds) + " s" + (totals.complete ? "; complete" : ""));

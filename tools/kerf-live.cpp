@@ -52,7 +52,7 @@ live::BareModel read_model(const Command& command, const std::string& path, cons
 live::Shown open_command(const Command& command, const tool::Tool& t) {
   if (live::is_scene(command.scene)) {
     sim::Setup setup = sim::read_setup(command.scene, sim::parse_overrides(command.settings));
-    sim::tell_lost_materials(setup, false);
+    sim::tell_lost_materials(setup);
     return shown(command, command.scene, {std::move(setup), {}}, t);
   }
   return shown(command, command.scene, read_model(command, command.scene, geo::read_all(command.scene), t), t);

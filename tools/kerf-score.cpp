@@ -27,18 +27,10 @@ struct Command {
   bool repair = false;
 };
 
-geo::Vec3 vector(const std::string& option, const std::string& text) {
-  double x = 0, y = 0, z = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &z, &rest) != 3 || !geo::in_range({x, y, z}))
-    throw tool::UsageError(option + " '" + text + "' is not X,Y,Z");
-  return {x, y, z};
-}
-
 // x, y, z or X,Y,Z.
 geo::Vec3 direction(const std::string& option, const std::string& text) {
   if (text == "x" || text == "y" || text == "z") return geo::Vec3::Unit(text[0] - 'x');
-  const geo::Vec3 given = vector(option, text);
+  const geo::Vec3 given = tool::parse_vector(option, text);
   if (!(given.norm() > 0)) throw tool::UsageError(option + " has no length");
   return given;
 }
@@ -66,13 +58,17 @@ geo::ScoreOptions options_of(const Command& w, std::uint64_t seed) {
   geo::ScoreOptions o;
   o.pattern.pattern = geo::pattern_named(w.pattern);
   const bool curves = o.pattern.pattern == geo::Pattern::curves, sheets = o.pattern.pattern == geo::Pattern::sheets;
-  if (curves == (w.curves.empty() && w.image.empty()))
-    throw tool::UsageError("--pattern curves goes with --curves FILE or --image FILE");
-  if (sheets == w.sheets.empty()) throw tool::UsageError("--pattern sheets and --sheets FILE go together");
+  if (curves && w.curves.empty() && w.image.empty())
+    throw tool::UsageError("--pattern curves needs --curves FILE or --image FILE");
+  if (!curves && !(w.curves.empty() && w.image.empty()))
+    throw tool::UsageError(std::string(w.image.empty() ? "--curves" : "--image") +
+                           " goes with --pattern curves; add it");
+  if (sheets && w.sheets.empty()) throw tool::UsageError("--pattern sheets needs --sheets FILE");
+  if (!sheets && !w.sheets.empty()) throw tool::UsageError("--sheets goes with --pattern sheets; add it");
   if (!w.axis.empty()) o.pattern.axis = direction("--axis", w.axis);
   if (w.density != "even" && o.pattern.pattern != geo::Pattern::voronoi && o.pattern.pattern != geo::Pattern::wood)
     throw tool::UsageError("--density goes with --pattern voronoi or wood");
-  if (!w.impact.empty()) o.pattern.impact = vector("--impact", w.impact);
+  if (!w.impact.empty()) o.pattern.impact = tool::parse_vector("--impact", w.impact);
   if (!w.depth.empty()) o.depth = percent(w.depth);
   if (w.pieces < 1 || w.pieces > 1000000) throw tool::UsageError("--pieces must be between 1 and 1000000");
   if (w.attempts < 1) throw tool::UsageError("--attempts must be at least 1");
@@ -201,6 +197,9 @@ int main(int argc, char** argv) {
   t.flag("--repair", w.repair, "Repair the model first, as kerf-repair does; give it to kerf-crack, too");
   t.output("The front file", {".front"});
   return t.run(argc, argv, [&] {
+    t.require("--edge-width", "--edge-detail");
+    t.require("--chip-size", "--chips");
+    for (const char* option : {"--up", "--fit", "--tolerance"}) t.require(option, "--image");
     auto options = options_of(w, t.seed);
     const std::string target = t.target(false);
     const auto file =

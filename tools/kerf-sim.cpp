@@ -14,6 +14,7 @@
 #include <kerf/progress.h>
 #include <kerf/simulation.h>
 #include <kerf/solid.h>
+#include "model.h"
 #include "sim/frame_writer.h"
 #include "sim/review.h"
 #include "sim/setup.h"
@@ -138,8 +139,8 @@ class RecordedRun {
     });
   }
   sim::Frame frame_of(sim::FrameOutcome outcome) const {
-    // Attributes are carried for a single model only; several have no common ones.
-    const geo::TriangleMesh* model = setup_.models.bodies.size() == 1 ? &setup_.models.all : nullptr;
+    const geo::TriangleMesh& all = setup_.models.all;
+    const geo::TriangleMesh* model = setup_.models.bodies.size() == 1 || !all.attributes.empty() ? &all : nullptr;
     return {.outcome = std::move(outcome),
             .surface = run_.surface(model),
             .nodes = nodes_of(run_),
@@ -230,7 +231,6 @@ void simulate(const Command& command, const tool::Tool& t) {
   std::error_code error;
   const bool resumed = command.resume && fs::exists(folder.checkpoint(), error);
   const auto recorded = open_run(setup, folder, last, resumed, t);
-  sim::tell_lost_materials(setup, true);
   if (setup.materials.glb) folder.write_text(folder.materials(), *setup.materials.glb);
   const geo::Progress progress = t.progress();
   recorded->advance_to(last, progress);
@@ -239,7 +239,8 @@ void simulate(const Command& command, const tool::Tool& t) {
   if (!offset.isZero(0))
     t.say("kerf-sim: the bodies are far from the origin; the root of run.usda moves them by (" + tool::rounded(offset) +
           ")");
-  sim::write_whole_run(folder, last, setup.scene.frame_rate, sim::up_axis(setup.scene.gravity));
+  tool::say_left_out(sim::write_whole_run(folder, last, setup.scene.frame_rate, sim::up_axis(setup.scene.gravity)),
+                     folder.path.string() + "/run.usda", "run's materials.glb", t);
   summarise(*recorded, setup, folder, last, t);
   review(*recorded, setup, command.strict, t);
 }

@@ -16,9 +16,10 @@ inline Kind kind_of(const std::string& bytes, const std::string& name) {
   const auto begins = [&](const char* word, std::size_t at = 0) {
     return bytes.compare(at, std::string(word).size(), word) == 0;
   };
-  if (begins("# .PCD") || begins("VERSION") || begins("FIELDS")) return Kind::nodes;
+  const std::string header = bytes.substr(0, 4096);
+  if (begins("# .PCD") || begins("VERSION") || begins("FIELDS"))
+    return header.find("radius") != std::string::npos ? Kind::nodes : Kind::surface;
   if (begins("ply")) {
-    const std::string header = bytes.substr(0, 4096);
     const bool radius = header.find("property double radius") != std::string::npos ||
                         header.find("property float radius") != std::string::npos;
     return radius ? Kind::nodes : Kind::surface;

@@ -220,6 +220,13 @@ void Tool::unit_option(double& metres, const std::string& help) {
       });
 }
 
+bool Tool::given(const std::string& option) const { return parser_->app.count(option) > 0; }
+
+void Tool::require(const std::string& option, const std::string& companion) const {
+  if (given(option) && !given(companion))
+    throw UsageError(option + " changes nothing without " + companion + "; give both");
+}
+
 int Tool::run(int argc, char** argv, const std::function<void()>& work) {
   running = this;
   try {
@@ -365,6 +372,14 @@ std::string rounded(double x) {
   return text;
 }
 std::string rounded(const geo::Vec3& p) { return rounded(p.x()) + ", " + rounded(p.y()) + ", " + rounded(p.z()); }
+
+geo::Vec3 parse_vector(const std::string& option, const std::string& text) {
+  double x = 0, y = 0, z = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &x, &y, &z, &rest) != 3 || !geo::in_range({x, y, z}))
+    throw UsageError(option + " '" + text + "' is not X,Y,Z");
+  return {x, y, z};
+}
 
 std::string counted(std::size_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");

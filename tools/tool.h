@@ -52,6 +52,11 @@ class Tool {
   /// terminal. With `endings`, such as ".ply", names with the ending of another format are refused.
   void output(const std::string& help, std::vector<std::string> endings = {});
 
+  /// Whether the command line, or the file of --config, has an option; for the work of run().
+  bool given(const std::string& option) const;
+  /// Throws UsageError where an option is given that changes nothing without its companion.
+  void require(const std::string& option, const std::string& companion) const;
+
   /// Parses the command line, sets threads and signal handlers, calls `work`, and returns the exit
   /// code for its outcome. For `--describe bash|zsh|man`, prints describe() instead.
   int run(int argc, char** argv, const std::function<void()>& work);
@@ -102,6 +107,8 @@ std::string number(double x);
 /// A number for people, rounded to four digits; for a point three, separated by commas.
 std::string rounded(double x);
 std::string rounded(const geo::Vec3& p);
+/// The vector that an option gives as X,Y,Z. Throws UsageError.
+geo::Vec3 parse_vector(const std::string& option, const std::string& text);
 /// "1 piece", "3 pieces".
 std::string counted(std::size_t n, const std::string& noun);
 /// Text as a JSON string, quotes included.

@@ -112,6 +112,13 @@ def used(vertices, triangles):
     return vertices[kept], numbers.reshape(-1, 3).astype(numpy.int32)
 
 
+def carried(vertices, values, kept):
+    """The values (n,) of vertices at the places of others, which are among them."""
+    places, first = numpy.unique(vertices, axis=0, return_index=True)
+    _, numbers = numpy.unique(numpy.concatenate([places, kept]), axis=0, return_inverse=True)
+    return values[first[numbers.ravel()[len(places):]]]
+
+
 def welded(vertices, triangles):
     """The mesh with open vertices at exactly one place merged, as Kerf's readers of files do."""
     edges = numpy.sort(numpy.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)

@@ -2,13 +2,17 @@
 not installed (with_module.py, with_tools.py). Nothing here needs Blender."""
 
 import dataclasses
+import re
 import typing
 
 import numpy
 
 
 class Refused(Exception):
-    """The model cannot be used as it is; the text is Kerf's sentence."""
+    """The model cannot be used as it is; the text is Kerf's sentence, with the remedy of the add-on in place of Kerf's own."""
+
+    def __init__(self, sentence):
+        super().__init__(re.sub(r"or try (kerf-repair|kerf\.Solid\.repaired\(\))", "or press Repair in the Kerf tab", sentence))
 
 
 class Failed(Exception):
@@ -21,10 +25,11 @@ class Stopped(Exception):
 
 @dataclasses.dataclass
 class Model:
-    """A closed triangle mesh: vertices (n, 3) float64, triangles (m, 3) int32."""
+    """A closed triangle mesh: vertices (n, 3) float64, triangles (m, 3) int32, weights of vertices."""
 
     vertices: numpy.ndarray
     triangles: numpy.ndarray
+    density: typing.Optional[numpy.ndarray] = None  # (n,): cells are many where it is high
 
 
 @dataclasses.dataclass

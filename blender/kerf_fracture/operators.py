@@ -65,7 +65,7 @@ class Work:
         for found in context.selected_objects:
             if found.type in source.TYPES and WALLS not in found:
                 try:
-                    sources.append(source.read(found, depsgraph))
+                    sources.append(source.read(found, depsgraph, self.density_group_for_reading()))
                 except backend.Refused as error:
                     self._refused.append((found.name, str(error)))
         cursor = context.scene.cursor.location.copy()
@@ -76,6 +76,10 @@ class Work:
 
     def fracture_options(self, own, cursor):
         return None
+
+    def density_group_for_reading(self):
+        """The vertex group whose weights are read."""
+        return ""
 
     def execute(self, context):
         if not self.prepare(context):
@@ -148,6 +152,9 @@ class Work:
 
 class Patterned(settings.Settings, Work):
     """An operator with the options of a pattern."""
+
+    def density_group_for_reading(self):
+        return self.density_group if self.pattern in {"voronoi", "wood"} else ""
 
     def fracture_options(self, own, cursor):
         """The backend's options for one object."""

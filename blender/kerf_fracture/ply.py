@@ -6,18 +6,22 @@ TYPES = {"char": "i1", "uchar": "u1", "short": "<i2", "ushort": "<u2", "int": "<
 CORNERS = {"vertex_indices": 3, "texcoord": 6, "normal": 9, "color": 12}  # numbers in a triangle's lists
 
 
-def write(path, vertices, triangles):
-    """Writes vertices (n, 3) as doubles and triangles (m, 3)."""
+def write(path, vertices, triangles, red=None):
+    """Writes vertices (n, 3) as doubles, with a red (n,) where it is given, and triangles (m, 3)."""
     rows = numpy.empty(len(triangles), [("count", "u1"), ("vertex_indices", "<u4", 3)])
     rows["count"] = 3
     rows["vertex_indices"] = triangles
+    names, values = ["x", "y", "z"], numpy.asarray(vertices, float)
+    if red is not None:
+        names += ["red", "green", "blue"]
+        values = numpy.column_stack([values, red, numpy.zeros((len(red), 2))])
+    properties = "".join(f"property double {name}\n" for name in names).encode()
     with open(path, "wb") as file:
         file.write(
-            b"ply\nformat binary_little_endian 1.0\n"
-            b"element vertex %d\nproperty double x\nproperty double y\nproperty double z\n"
-            b"element face %d\nproperty list uchar uint vertex_indices\nend_header\n" % (len(vertices), len(triangles))
+            b"ply\nformat binary_little_endian 1.0\nelement vertex %d\n%selement face %d\nproperty list uchar uint vertex_indices\nend_header\n"
+            % (len(vertices), properties, len(triangles))
         )
-        file.write(numpy.ascontiguousarray(vertices, "<f8").tobytes())
+        file.write(numpy.ascontiguousarray(values, "<f8").tobytes())
         file.write(rows.tobytes())
 
 

@@ -23,7 +23,7 @@ class Settings:
     pattern: EnumProperty(name="Pattern", items=PATTERNS, default="voronoi", description="Where the walls are")
     pieces: IntProperty(name="Pieces", default=20, min=2, max=100000, soft_max=1000, description="Number of pieces")
     jagged: FloatProperty(
-        name="Jaggedness", default=0.01, min=0, max=0.2, soft_max=0.05, step=0.1, precision=3,
+        name="Jaggedness", default=0, min=0, max=0.2, soft_max=0.05, step=0.1, precision=3,
         description="Height of the walls' bumps as a fraction of the object's diagonal; 0: walls are flat",
     )
     bumps: FloatProperty(
@@ -47,6 +47,9 @@ class Settings:
     )
     cluster: FloatProperty(
         name="Cluster", default=0.15, min=0.01, max=1, description="How far from the 3D cursor pieces are small, as a fraction of the diagonal"
+    )
+    density_group: StringProperty(
+        name="Density Group", description="Cells and Wood: vertex group with high weights where pieces are to be small. Empty: pieces are alike everywhere"
     )
     grain: FloatProperty(name="Grain", default=5, min=1, max=100, description="Wood: how many times longer than thick pieces are")
     inner_material: StringProperty(
@@ -103,6 +106,8 @@ def draw(layout, settings, column=True):
         block.prop(settings, "at_cursor")
         if settings.at_cursor and settings.pattern in {"voronoi", "wood"}:
             block.prop(settings, "cluster")
+    if settings.pattern in {"voronoi", "wood"}:
+        block.prop(settings, "density_group")
 
 
 def draw_output(layout, settings):

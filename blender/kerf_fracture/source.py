@@ -50,8 +50,8 @@ class Source:
     left_out: list  # words for what pieces do not have
 
 
-def read(found, depsgraph):
-    """The object's triangles. Throws Refused when there are none."""
+def read(found, depsgraph, density_group=""):
+    """The object's triangles, with the weights of a vertex group as density. Throws Refused when there are none."""
     evaluated = found.evaluated_get(depsgraph)
     try:
         mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
@@ -60,9 +60,25 @@ def read(found, depsgraph):
     try:
         if mesh is None or not len(mesh.polygons):
             raise Refused("the object has no faces")
-        return _arrays(found, evaluated, mesh)
+        own = _arrays(found, evaluated, mesh)
+        if density_group:
+            own.model.density = _weights(found, mesh, density_group)
+        return own
     finally:
         evaluated.to_mesh_clear()
+
+
+def _weights(found, mesh, name):
+    """The weights of a vertex group at the vertices that triangles use."""
+    group = found.vertex_groups.get(name) if hasattr(found, "vertex_groups") else None
+    if group is None:
+        raise Refused(f"the object has no vertex group '{name}'; paint one, or clear Density Group")
+    weights = numpy.zeros(len(mesh.vertices))
+    for vertex in mesh.vertices:
+        for own in vertex.groups:
+            if own.group == group.index:
+                weights[vertex.index] = own.weight
+    return weights[numpy.unique(_get(mesh.loop_triangles, "vertices", (len(mesh.loop_triangles), 3), numpy.int32))]
 
 
 def _frame(matrix):

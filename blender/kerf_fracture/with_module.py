@@ -68,6 +68,8 @@ class Module:
         solid = self.kerf.Solid(*arrays.welded(model.vertices, model.triangles))
         names = ("pieces", "jagged", "seed", "cluster", "grain", "edge_detail", "chips", "chip_size")
         wanted = {name: getattr(options, name) for name in names}
+        if model.density is not None:
+            wanted["density"] = arrays.carried(model.vertices, model.density, numpy.array(solid.vertices))
         wanted.update({name: list(getattr(options, name)) for name in ("axis", "impact") if getattr(options, name) is not None})
         score = self.kerf.score(solid, options.pattern, frequency=options.bumps, progress=_span(progress, 0, end / 2), **wanted)
         notes = []

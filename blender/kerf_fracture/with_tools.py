@@ -58,7 +58,7 @@ class Tools:
 
     def _crack(self, folder, model, options, progress):
         """Writes cut.ply; returns the notes of kerf-score."""
-        ply.write(os.path.join(folder, "model.ply"), model.vertices, model.triangles)
+        ply.write(os.path.join(folder, "model.ply"), model.vertices, model.triangles, model.density)
         arguments = ["--pattern", options.pattern, "--pieces", str(options.pieces), "--seed", str(options.seed)]
         arguments += ["--jagged", repr(options.jagged), "--bumps", repr(options.bumps)]
         arguments += ["--edge-detail", repr(options.edge_detail), "--chips", str(options.chips), "--chip-size", repr(options.chip_size)]
@@ -66,6 +66,8 @@ class Tools:
         for name in ("axis", "impact"):
             if getattr(options, name) is not None:
                 arguments += [f"--{name}=" + ",".join(repr(float(x)) for x in getattr(options, name))]
+        if model.density is not None:
+            arguments += ["--density", "red"]
         notes = self._run(
             ["kerf-score", "model.ply", *arguments, "-o", "score.front"], folder, lambda words, share: progress(words, share / 2)
         )

@@ -182,6 +182,12 @@ typedef struct kerf_score_options {
   double frequency;             /* of rough walls, per diagonal */
   double depth;                 /* below 1: walls reach only so deep */
   int32_t attempts;
+  int32_t chips;                /* small pieces that break off edges, beside `pieces` */
+  double chip_size;             /* their length, of the cube root of the mean piece's volume */
+  double edge_detail;           /* amplitude of finer bumps near the skin, of the diagonal; 0: none */
+  double edge_width;            /* their depth, of the diagonal */
+  const double* density;        /* where cells are many: a value of at least 0 for each vertex; or null */
+  size_t density_length;
 } kerf_score_options;
 KERF_API kerf_status kerf_score_defaults(kerf_score_options* options);
 /* The walls of a pattern as a sheet for kerf_complex_insert(). `options` may be null. `pieces`

@@ -83,7 +83,15 @@ std::shared_ptr<ComplexObject> complex_for(const std::shared_ptr<const geo::Tria
   return std::make_shared<ComplexObject>(complex_of(*mesh), mesh);
 }
 
-geo::ScoreOptions score_options_of(const kerf_score_options* given) {
+// The density that a value for each vertex of a model makes.
+geo::Density density_of(const kerf_score_options& o, const geo::TriangleMesh& model) {
+  if (!o.density) return {};
+  if (o.pattern != KERF_VORONOI && o.pattern != KERF_WOOD)
+    throw ArgumentError("density: goes with the patterns KERF_VORONOI and KERF_WOOD");
+  return geo::painted_density(model, {o.density, o.density_length});
+}
+
+geo::ScoreOptions score_options_of(const kerf_score_options* given, const geo::TriangleMesh& model) {
   kerf_score_options o;
   kerf_score_defaults(&o);
   if (given) o = *given;
@@ -100,6 +108,11 @@ geo::ScoreOptions score_options_of(const kerf_score_options* given) {
   options.jagged.frequency = number_of(o.frequency, 1e-3, 200, "frequency");
   options.depth = number_of(o.depth, 1e-6, 1, "depth");
   options.attempts = static_cast<int>(number_of(o.attempts, 1, 1000000, "attempts"));
+  options.chips.count = static_cast<int>(number_of(o.chips, 0, 100000, "chips"));
+  options.chips.size = number_of(o.chip_size, 0.01, 1, "chip_size");
+  options.jagged.edge_amplitude = number_of(o.edge_detail, 0, 1, "edge_detail");
+  options.jagged.edge_width = number_of(o.edge_width, 1e-3, 1, "edge_width");
+  options.pattern.density = density_of(o, model);
   return options;
 }
 
@@ -160,6 +173,10 @@ kerf_status kerf_score_defaults(kerf_score_options* options) {
     to.frequency = from.jagged.frequency;
     to.depth = from.depth;
     to.attempts = from.attempts;
+    to.chips = from.chips.count;
+    to.chip_size = from.chips.size;
+    to.edge_detail = from.jagged.edge_amplitude;
+    to.edge_width = from.jagged.edge_width;
     required(options, "options") = to;
   });
 }
@@ -168,8 +185,8 @@ kerf_status kerf_score(kerf_complex complex, const kerf_score_options* options, 
                        kerf_mesh* sheet, uint32_t* pieces) {
   return call([&] {
     NewHandle out(sheet, "sheet");
-    const geo::ScoreOptions o = score_options_of(options);
     const Reading<ComplexObject> use(complex);
+    const geo::ScoreOptions o = score_options_of(options, *use->model);
     geo::Score score = geo::make_score(use->complex, o, progress_of(progress, user));
     if (pieces) *pieces = score.pieces;
     out.set(object_for(std::move(score.sheet)));
@@ -265,8 +282,8 @@ kerf_status kerf_fracture(kerf_mesh solid, const kerf_score_options* options, ke
                           kerf_pieces* pieces) {
   return call([&] {
     NewHandle out(pieces, "pieces");
-    const geo::ScoreOptions o = score_options_of(options);
     const Reading<MeshObject> use(solid);
+    const geo::ScoreOptions o = score_options_of(options, use->mesh);
     out.set(std::make_shared<PiecesObject>(geo::fracture(use->mesh, o, progress_of(progress, user))));
   });
 }

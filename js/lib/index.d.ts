@@ -63,6 +63,16 @@ export interface FractureOptions extends PieceOptions {
   impact?: ArrayLike<number>;
   cluster?: number;
   grain?: number;
+  /** voronoi, wood: where cells are many, a channel of the model's colours or a value of at least 0 for each vertex. */
+  density?: "red" | "green" | "blue" | "alpha" | "luminance" | ArrayLike<number>;
+  /** Small pieces that break off edges, beside the number of pieces. */
+  chips?: number;
+  /** Their length, a fraction of the cube root of the mean piece's volume. */
+  chipSize?: number;
+  /** Height of finer bumps near the skin, a fraction of the diagonal; 0: none. */
+  edgeDetail?: number;
+  /** Their depth, a fraction of the diagonal. */
+  edgeWidth?: number;
   progress?: Progress;
 }
 export interface ScoreOptions extends FractureOptions {
@@ -149,6 +159,8 @@ export class Score {
   private constructor();
   readonly sheet: Mesh;
   readonly pieces: number;
+  /** Chips beside these. */
+  readonly chips: number;
   readonly attempts: number;
 }
 export interface CrackDelta {

@@ -222,8 +222,8 @@ export class Front {
 
 /** The walls of a pattern: a sheet that divides a model. */
 export class Score {
-  constructor({ sheet, pieces, attempts }) {
-    this.sheet = meshOf(sheet), this.pieces = pieces, this.attempts = attempts;
+  constructor({ sheet, pieces, chips, attempts }) {
+    this.sheet = meshOf(sheet), this.pieces = pieces, this.chips = chips, this.attempts = attempts;
   }
   delete() { this.sheet.delete(); }
   [dispose]() { this.delete(); }
@@ -232,6 +232,7 @@ export class Score {
 /** Looks for a pattern that divides a model into as many pieces as wanted. */
 export function score(model, options = {}) {
   const { progress, ...rest } = options;
+  if (rest.density !== undefined && typeof rest.density !== "string") rest.density = Float64Array.from(rest.density);
   if (rest.impact !== undefined) rest.impact = rows(rest.impact, "impact");
   const complex = model instanceof Complex ? model : model.complex();
   try {

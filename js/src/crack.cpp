@@ -1,4 +1,6 @@
 // Scores, cracks, pieces, bonds.
+#include <algorithm>
+#include <array>
 #include <sstream>
 
 #include <kerf/check.h>
@@ -30,7 +32,25 @@ geo::Vec3 axis_from(const val& axis) {
   return direction;
 }
 
-geo::ScoreOptions score_options(const val& options) {
+// A channel of the model's colours, or a value for each vertex.
+geo::Density density_from(const val& density, const geo::TriangleMesh& model) {
+  if (!density.isString()) return geo::painted_density(model, numbers_from<double>(density));
+  constexpr std::array channels{"red", "green", "blue", "alpha", "luminance"};
+  const auto name = density.as<std::string>();
+  const auto found = std::find(channels.begin(), channels.end(), name);
+  if (found == channels.end())
+    throw geo::InputError("density: '" + name +
+                          "' is not red, green, blue, alpha or luminance; or give a value for each vertex");
+  return geo::painted_density(model, static_cast<geo::ColorChannel>(found - channels.begin()));
+}
+
+// Throws InputError where an option is given that changes nothing without its companion.
+void require(const val& options, const char* option, const char* companion) {
+  if (has(options, option) && !has(options, companion))
+    throw geo::InputError(std::string("score: ") + option + " changes nothing without " + companion + "; give both");
+}
+
+geo::ScoreOptions score_options(const val& options, const geo::TriangleMesh& model) {
   geo::ScoreOptions o;
   if (has(options, "pattern")) o.pattern.pattern = geo::pattern_named(options["pattern"].as<std::string>());
   take(options, "pieces", o.pieces, 1, 1000000);
@@ -44,6 +64,17 @@ geo::ScoreOptions score_options(const val& options) {
   take(options, "grain", o.pattern.grain, 1, 1000);
   take_seed(options, "seed", o.pattern.seed);
   o.jagged.seed = o.pattern.seed;
+  require(options, "chipSize", "chips");
+  require(options, "edgeWidth", "edgeDetail");
+  take(options, "chips", o.chips.count, 0, 100000);
+  take(options, "chipSize", o.chips.size, 0.01, 1);
+  take(options, "edgeDetail", o.jagged.edge_amplitude, 0, 1);
+  take(options, "edgeWidth", o.jagged.edge_width, 1e-3, 1);
+  if (has(options, "density")) {
+    if (o.pattern.pattern != geo::Pattern::voronoi && o.pattern.pattern != geo::Pattern::wood)
+      throw geo::InputError("density: goes with the patterns voronoi and wood");
+    o.pattern.density = density_from(options["density"], model);
+  }
   if (has(options, "axis")) o.pattern.axis = axis_from(options["axis"]);
   if (has(options, "impact")) o.pattern.impact = point_from(options["impact"], "impact");
   return o;
@@ -66,9 +97,11 @@ val copy_complex(const ComplexHandle& complex) {
 
 val score(const ComplexHandle& model, const val& options, const val& progress) {
   return guarded([&] {
-    geo::Score made = geo::make_score(model->complex, score_options(options), progress_to(progress));
+    geo::Score made =
+        geo::make_score(model->complex, score_options(options, model->model->mesh), progress_to(progress));
     val result = val::object();
     result.set("pieces", made.pieces);
+    result.set("chips", made.chips);
     result.set("attempts", made.attempts);
     result.set("sheet", handle(std::move(made.sheet)));
     return result;

@@ -23,8 +23,8 @@ int side_of(const Vec3 (&t)[3], const Vec3& p) {
 
 }  // namespace
 
-Arrangement::Arrangement(const Complex& complex, const Strip& strip)
-    : complex_(complex), strip_(strip), triangulator_(points_) {
+Arrangement::Arrangement(const Complex& complex, const Strip& strip, Pause pause)
+    : complex_(complex), strip_(strip), pause_(std::move(pause)), triangulator_(points_) {
   points_.reserve(strip.points.size() * 8 + 64);
   for (const Vec3& p : strip.points) {
     const PointIndex l = points_.add(p);
@@ -53,7 +53,10 @@ PointIndex Arrangement::point_of(VertexId v) {
 
 void Arrangement::meet(CrackStats& stats) {
   divisions_.reserve(8 * strip_size);
-  for (std::uint32_t s = 0; s < strip_size; ++s) meet_faces(s, stats);
+  for (std::uint32_t s = 0; s < strip_size; ++s) {
+    pause_before(s, pause_);
+    meet_faces(s, stats);
+  }
   meet_itself();
 }
 
@@ -96,7 +99,9 @@ void Arrangement::meet_itself() {
   std::vector<Box3> boxes;
   for (const auto& t : strip_.triangles)
     boxes.push_back(box_of(strip_.points[t.p[0]], strip_.points[t.p[1]], strip_.points[t.p[2]]));
+  const PauseOfThread pause_here(pause_);
   const auto keep_meeting = [&](AabbTree::Pairs& pairs) {
+    pause_here();
     std::erase_if(pairs, [&](const auto& pair) {
       const auto s = corners_of(pair.first), t = corners_of(pair.second);
       Signs sign;
@@ -114,7 +119,9 @@ void Arrangement::meet_itself() {
     return x.first != y.first ? before(x.first, y.first) : before(x.second, y.second);
   });
   const std::size_t divisions = divisions_.size();
+  std::size_t met = 0;
   for (const auto& [i, j] : pairs) {
+    pause_before(met++, pause_);
     const auto a = std::min(i, j), b = std::max(i, j);
     const auto s = corners_of(a), t = corners_of(b);
     Signs sign;
@@ -354,6 +361,7 @@ void Arrangement::split() {
   if (meets_itself_) canonicalize = [this](PointIndex l) { return canonical_point(l); };
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < elements.size(); ++i) {
+    pause_before(i, pause_);
     Element& e = elements[i];
     steiner_begin_[i] = static_cast<std::uint32_t>(steiner_.size());
     at = collect_divisions(i, at);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "crack/index_map.h"
+#include "crack/pause.h"
 #include "crack/sweep.h"
 #include "crack/triangulator.h"
 
@@ -27,11 +28,15 @@ struct Element {
 /// index. Positions are compared only where the strip intersects itself.
 class Arrangement {
  public:
-  /// The strip's triangles as elements. Both arguments must outlive the arrangement.
-  Arrangement(const Complex& complex, const Strip& strip);
+  /// The strip's triangles as elements. Complex and strip must outlive the arrangement. `pause` is
+  /// called now and then by all that works with the arrangement.
+  Arrangement(const Complex& complex, const Strip& strip, Pause pause = {});
+  /// As given.
+  const Pause& pause() const { return pause_; }
 
   /// Finds the faces of K that the strip meets, and all intersections of the strip with them and
-  /// with itself. Throws GeometryError when two triangles meet in more than a segment.
+  /// with itself. Throws GeometryError when two triangles meet in more than a segment. Pauses may
+  /// throw, here and in split().
   void meet(CrackStats& stats);
   /// Triangulates each element alone, constrained to its intersections. Throws as
   /// Triangulator::triangulate().
@@ -110,6 +115,7 @@ class Arrangement {
 
   const Complex& complex_;
   const Strip& strip_;
+  const Pause pause_;
   Points points_;
   Triangulator triangulator_;
   std::vector<VertexId> ids_;                         // per point: vertex of K

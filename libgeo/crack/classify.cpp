@@ -65,6 +65,7 @@ class Classifier {
     visited_[start] = true;
     std::size_t inside = 0, outside = 0;
     for (std::size_t g = 0; g < component_.size(); ++g) {
+      pause_before(g, a_.pause());
       const ChildRef ref = children_[component_[g]];
       const Child& child = a_.children[ref.child];
       for (std::uint8_t k = 0; k < 3; ++k) {

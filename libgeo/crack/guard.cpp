@@ -145,10 +145,11 @@ class Inspection {
   }
 
   // A new face that crosses, or is too near to, a kept face.
-  Fault find_crossing_with_kept() const {
+  Fault find_crossing_with_kept(const crack::Pause& pause) const {
     std::vector<FaceId> removed = edit_.removed_faces, looked_up;
     std::sort(removed.begin(), removed.end());
     for (std::size_t at = 0, next; at < families_.size(); at = next) {
+      crack::pause_now(pause);
       // Families with the same list of near faces are tested together.
       const Family& family = families_[at];
       for (next = at + 1; next < families_.size() && !family.near.empty() &&
@@ -191,7 +192,8 @@ class Inspection {
   }
 
   // Two new faces that cross or are too near. The first pair along the longest axis is reported.
-  Fault find_crossing_among_new() const {
+  Fault find_crossing_among_new(const crack::Pause& pause) const {
+    const crack::PauseOfThread pause_here(pause);
     Box3 all;
     std::vector<Box3> boxes;
     boxes.reserve(count_);
@@ -206,6 +208,7 @@ class Inspection {
       return x != y ? x < y : i < j;
     };
     const auto keep_faults = [&](AabbTree::Pairs& pairs) {
+      pause_here();
       std::erase_if(pairs, [&](auto& pair) {
         if (before(pair.second, pair.first)) std::swap(pair.first, pair.second);
         const TestedFace &a = faces_[pair.first], &b = faces_[pair.second];
@@ -285,19 +288,25 @@ class Inspection {
 
 }  // namespace
 
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context) {
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context,
+                 const crack::Pause& pause) {
+  crack::pause_now(pause);
   const Inspection inspection(complex, edit, context);
   Fault fault = inspection.find_flipped();
   if (!fault) fault = inspection.find_coincident();
+  crack::pause_now(pause);
   if (!fault) fault = find_radial_fault(complex, edit, context.moved);
-  if (!fault) fault = inspection.find_crossing_with_kept();
-  if (!fault) fault = inspection.find_crossing_among_new();
+  if (!fault) fault = inspection.find_crossing_with_kept(pause);
+  crack::pause_now(pause);
+  if (!fault) fault = inspection.find_crossing_among_new(pause);
+  crack::pause_now(pause);
   if (!fault) fault = find_reentry(complex, edit, context.exits);
   return fault;
 }
 
-Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext& context, std::size_t& repairs) {
-  Fault fault = find_fault(complex, edit, context);
+Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext& context, std::size_t& repairs,
+                  const crack::Pause& pause) {
+  Fault fault = find_fault(complex, edit, context, pause);
   if (!fault) return fault;
   const Box3& extent = complex.extent();
   const double ulp = 0x1p-52 * (extent.diagonal() + extent.lo.cwiseAbs().cwiseMax(extent.hi.cwiseAbs()).maxCoeff());
@@ -322,7 +331,7 @@ Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext&
         edit.new_vertices[i] += distance * random.uniform(0.5, 1.0) * direction;
       }
     if (before.empty()) return fault;
-    Fault now = find_fault(complex, edit, displaced);
+    Fault now = find_fault(complex, edit, displaced, pause);
     if (!now) {
       ++repairs;
       return now;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "crack/pause.h"
 #include "kerf/complex.h"
 
 namespace geo {
@@ -62,11 +63,14 @@ struct Fault {
 /// its family's triangle; no two vertices coincide; faces around edges are in the radial order
 /// listed; no new face crosses another one or is nearer than the clearance; exits stay outside.
 /// Exact, except for the clearance. Returns the first fault, none for a valid edit. Cost follows
-/// the edit.
-Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context);
+/// the edit. `pause` may throw.
+Fault find_fault(const Complex& complex, const ComplexEdit& edit, const GuardContext& context,
+                 const crack::Pause& pause = {});
 
 /// Tries to remove faults by displacing rounded points, from 1 ulp up to 2¹⁵. Returns the remaining
 /// fault, none for a valid edit. Increments `repairs` when all faults were removed.
-Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext& context, std::size_t& repairs);
+/// `pause` may throw.
+Fault snap_repair(const Complex& complex, ComplexEdit& edit, const GuardContext& context, std::size_t& repairs,
+                  const crack::Pause& pause = {});
 
 }  // namespace geo

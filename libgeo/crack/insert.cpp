@@ -150,7 +150,7 @@ CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arran
     if (*clearance > 0) exits = exits_of(complex, strip, arrangement, edges, kept, vertex);
     if (const Fault fault =
             snap_repair(complex, edit, {.families = families, .moved = moved, .clearance = *clearance, .exits = exits},
-                        stats.repairs))
+                        stats.repairs, arrangement.pause()))
       throw GeometryError(fault.what);
     stats.guard_seconds += watch.lap();
   }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "crack/arrangement.h"
+#include "crack/pause.h"
 
 namespace geo::crack {
 
@@ -18,12 +19,18 @@ Attempt attempt_at(int number, const CrackOptions& options, double size);
 /// Inserts the parts of the strip in the material as faces of crack `crack` and returns the
 /// changes; empty when no part is inside. `clearance`: see GuardContext; empty: without the guard,
 /// see insert_unguarded(). `vertex` receives the vertex of each point of the arrangement that has
-/// one. Throws GeometryError, K unchanged, when rounding would break K.
+/// one. Throws GeometryError, K unchanged, when rounding would break K;
+/// where the arrangement's pause throws, K is unchanged, too.
 CrackDelta insert_strip(Complex& complex, const Strip& strip, Arrangement& arrangement, std::int32_t crack,
                         std::vector<VertexId>& vertex, std::optional<double> clearance, CrackStats& stats);
 
 /// As insert_sheet(), in one attempt and without the guard: the faces and how they are joined are
-/// exact, but rounded coordinates may make faces cross. For counts of pieces, not for output.
-void insert_unguarded(Complex& complex, const TriangleMesh& sheet, std::int32_t crack);
+/// exact, but rounded coordinates may make faces cross. For counts of pieces, not for output. Where
+/// `pause` throws, K is unchanged.
+void insert_unguarded(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const Pause& pause = {});
+
+/// As insert_sheet(); where `pause` throws, K is unchanged.
+CrackDelta insert_sheet_with_pauses(Complex& complex, const TriangleMesh& sheet, std::int32_t crack,
+                                    const CrackOptions& options, CrackStats* stats, const Pause& pause);
 
 }  // namespace geo::crack

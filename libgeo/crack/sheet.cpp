@@ -25,19 +25,19 @@ void check(const TriangleMesh& sheet, std::int32_t crack) {
 
 }  // namespace
 
-void crack::insert_unguarded(Complex& complex, const TriangleMesh& sheet, std::int32_t crack) {
+void crack::insert_unguarded(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const Pause& pause) {
   check(sheet, crack);
   const CrackOptions options;
   Strip strip = strip_of(sheet.vertices, sheet.triangles);
   snap_to_vertices(strip, complex, options.snap * complex.extent().diagonal());
-  Arrangement arrangement(complex, strip);
+  Arrangement arrangement(complex, strip, pause);
   std::vector<VertexId> vertex;
   CrackStats stats;
   insert_strip(complex, strip, arrangement, crack, vertex, {}, stats);
 }
 
-CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
-                        CrackStats* stats) {
+CrackDelta crack::insert_sheet_with_pauses(Complex& complex, const TriangleMesh& sheet, std::int32_t crack,
+                                           const CrackOptions& options, CrackStats* stats, const crack::Pause& pause) {
   check(sheet, crack);
   const double size = complex.extent().diagonal();
   // 2⁶⁴ / golden ratio spreads consecutive seeds.
@@ -58,7 +58,7 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
     done.snapped += snap_to_vertices(strip, complex, options.snap * size);
     done.near_seconds += watch.lap();
     try {
-      crack::Arrangement arrangement(complex, strip);
+      crack::Arrangement arrangement(complex, strip, pause);
       std::vector<VertexId> vertex;
       CrackDelta delta = crack::insert_strip(complex, strip, arrangement, crack, vertex, clearance, done);
       if (stats) *stats += done;
@@ -69,6 +69,11 @@ CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_
   }
   if (stats) *stats += done;
   throw GeometryError("the sheet cannot be inserted: " + reason);
+}
+
+CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
+                        CrackStats* stats) {
+  return crack::insert_sheet_with_pauses(complex, sheet, crack, options, stats, {});
 }
 
 }  // namespace geo

@@ -56,6 +56,7 @@ class Stitcher {
   // corners are entered in vertex_.
   void divide_faces() {
     for (auto e = a_.strip_size; e < a_.elements.size(); ++e) {
+      pause_before(e, a_.pause());
       const Element& element = a_.elements[e];
       for (auto c = element.first; c < element.end; ++c) {
         if (!element.cut) {
@@ -81,13 +82,16 @@ class Stitcher {
 
   // Radial orders around the edges of crack faces, each at the edge's first use.
   void order_crack_edges(std::span<const ChildRef> kept) {
-    for (const ChildRef& ref : kept)
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      pause_before(i, a_.pause());
+      const ChildRef& ref = kept[i];
       for (std::uint8_t k = 0; k < 3; ++k) {
         if (a_.children[ref.child].edge[k] == edge_diagonal) continue;
         const PointIndex u = a_.children[ref.child].v[k], v = a_.children[ref.child].v[(k + 1) % 3];
         crack_edges_.find(u, v, crack_uses_);
         if (crack_uses_[0].child == ref.child && crack_uses_[0].k == k) give_order(u, v, crack_uses_);
       }
+    }
   }
 
   // Edges of K without a crack face keep their radial order. Where such an edge was divided its
@@ -95,6 +99,7 @@ class Stitcher {
   // order.
   void order_divided_edges() {
     for (auto e = a_.strip_size; e < a_.elements.size(); ++e) {
+      pause_before(e, a_.pause());
       const Element& element = a_.elements[e];
       if (!element.cut) continue;
       for (auto c = element.first; c < element.end; ++c)

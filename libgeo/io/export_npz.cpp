@@ -1,23 +1,12 @@
 // write_npz() of kerf/export.h. The zip format is PKWARE's APPNOTE 6.3, with the 64-bit fields of
 // its § 4.5.3 in every entry; .npy is NumPy's NEP 1.
-#include <array>
-
+#include "base/crc32.h"
 #include "io/kerf_layout.h"
 #include "io/kerf_writer.h"
 #include "kerf/export.h"
 
 namespace geo {
 namespace {
-
-constexpr auto crc_table = [] {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t c = i;
-    for (int k = 0; k < 8; ++k) c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
-    table[i] = c;
-  }
-  return table;
-}();
 
 // Little-endian fields of fixed width, one after another.
 class Fields {
@@ -64,7 +53,7 @@ void write_npz(std::ostream& out, const KerfFile& file) {
     // The checksum precedes the bytes, so they are read twice.
     std::uint32_t crc = ~0u;
     const auto sum = [&](std::span<const std::byte> bytes) {
-      for (const std::byte b : bytes) crc = crc_table[(crc ^ static_cast<std::uint32_t>(b)) & 255] ^ (crc >> 8);
+      for (const std::byte b : bytes) crc = crc32_after(crc, static_cast<std::uint8_t>(b));
     };
     const auto pass = [&](const KerfSink::Take& take) {
       KerfSink sink(take);

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "io/image_type.h"
 #include "io/shown.h"
+#include "kerf/error.h"
 
 namespace geo {
 namespace {
@@ -80,8 +82,10 @@ class Copier {
     list("materials").push_back(std::move(description));
   }
 
-  /// Uses of textures that were left out.
+  /// Uses of textures that were left out for their texture coordinates.
   std::size_t dropped() const { return dropped_; }
+  /// Images that were left out.
+  std::vector<std::string> faults() const { return {faults_.begin(), faults_.end()}; }
 
   // Writes what the materials name.
   void finish() {
@@ -110,10 +114,43 @@ class Copier {
       Json set = use.value("texCoord", Json(0u));
       if (use.contains("/extensions/KHR_texture_transform/texCoord"_json_pointer))
         set = use["extensions"]["KHR_texture_transform"]["texCoord"];
-      if (!set.is_number_unsigned() || set.get<std::size_t>() >= uv_sets) gone.push_back(key);
+      const bool placed = set.is_number_unsigned() && set.get<std::size_t>() < uv_sets;
+      if (!placed) ++dropped_;
+      if (!placed || has_fault(index_in(from_, use["index"], "textures"))) gone.push_back(key);
     }
     for (const std::string& key : gone) object.erase(key);
-    dropped_ += gone.size();
+  }
+
+  // Whether one of a texture's images cannot be used.
+  bool has_fault(std::size_t texture) {
+    Json description = from_.entry("textures", texture);
+    bool result = false;
+    for_each_object(description, "", [&](Json& object, const std::string&) {
+      if (object.contains("source")) result = image_has_fault(index_in(from_, object["source"], "images")) || result;
+    });
+    return result;
+  }
+
+  bool image_has_fault(std::size_t image) {
+    const auto [at, fresh] = has_fault_.try_emplace(image, false);
+    if (!fresh) return at->second;
+    const GltfDocument::Json& description = from_.entry("images", image);
+    std::string name = GltfDocument::text(description, "name"), fault;
+    const std::string uri = GltfDocument::text(description, "uri");
+    if (name.empty()) name = uri.empty() || uri.starts_with("data:") ? std::to_string(image) : uri;
+    try {
+      fault = image_fault(bytes_of(description));
+    } catch (const InputError&) {
+      if (uri.empty() || uri.starts_with("data:")) throw;
+      fault = "is not in its folder";
+    }
+    if (!fault.empty()) faults_.insert("image " + shown(name) + ", which " + fault);
+    return at->second = !fault.empty();
+  }
+
+  std::string bytes_of(const GltfDocument::Json& description) {
+    const auto view = from_.index(description, "bufferView");
+    return view ? std::string(from_.view(*view)) : from_.at_uri(GltfDocument::text(description, "uri"));
   }
 
   void add_texture(std::size_t texture) {
@@ -131,14 +168,8 @@ class Copier {
 
   void add_image(std::size_t image) {
     const GltfDocument::Json& description = from_.entry("images", image);
-    const auto view = from_.index(description, "bufferView");
-    const std::string bytes =
-        view ? std::string(from_.view(*view)) : from_.at_uri(GltfDocument::text(description, "uri"));
-    std::string type = image_type(bytes);
-    if (type.empty()) type = GltfDocument::text(description, "mimeType");
-    if (type.empty())
-      from_.fail("has image " + std::to_string(image) + " of an unknown format; save it as PNG or JPEG");
-    Json written = {{"bufferView", to_.bytes(bytes)}, {"mimeType", type}};
+    const std::string bytes = bytes_of(description);
+    Json written = {{"bufferView", to_.bytes(bytes)}, {"mimeType", image_type(bytes)}};
     const std::string name = GltfDocument::text(description, "name");
     if (!name.empty()) written["name"] = name;
     list("images").push_back(std::move(written));
@@ -163,6 +194,8 @@ class Copier {
   GltfDocument& from_;
   GlbFile& to_;
   std::size_t textures_before_, samplers_before_, images_before_, dropped_ = 0;
+  std::map<std::size_t, bool> has_fault_;  // by image
+  std::set<std::string> faults_;
   Numbers textures_, samplers_, images_;
 };
 
@@ -176,15 +209,19 @@ GltfLibrary materials_of(GltfDocument& document, const std::vector<GltfGroup>& g
   copier.finish();
   std::ostringstream out;
   library.write(out);
-  return {std::move(out).str(), copier.dropped()};
+  return {std::move(out).str(), copier.dropped(), copier.faults()};
 }
 
-std::vector<std::string> add_materials(GlbFile& file, const std::string& materials) {
+std::vector<std::string> add_materials(GlbFile& file, const std::string& materials,
+                                       const std::map<std::string, std::string>& renamed) {
   GltfDocument library(materials, "the materials of the surface");
   Copier copier(library, file);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < library.count("materials"); ++i) {
-    names.push_back(GltfDocument::text(library.entry("materials", i), "name"));
+    const std::string name = GltfDocument::text(library.entry("materials", i), "name");
+    const auto other = renamed.find(name);
+    if (!renamed.empty() && other == renamed.end()) continue;
+    names.push_back(renamed.empty() ? name : other->second);
     copier.add_material(i, names.back(), ~std::size_t(0));
   }
   copier.finish();

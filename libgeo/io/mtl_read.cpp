@@ -302,12 +302,18 @@ class LibraryMaker {
     try {
       bytes = read_all(path->string());
     } catch (const InputError&) {
-      missing_.insert(shown(map.file));
-      return {};
+      std::error_code failed;
+      if (fs::file_size(*path, failed) > 0 || failed) {
+        missing_.insert(shown(map.file));
+        return {};
+      }
+      bytes.clear();  // empty files are refused
     }
     const std::string type = image_type(bytes);
-    if (type != "image/png" && type != "image/jpeg") {
-      lost_.insert("image " + shown(map.file) + " (save it as PNG or JPEG)");
+    std::string fault = image_fault(bytes);
+    if (fault.empty() && type != "image/png" && type != "image/jpeg") fault = "is no PNG or JPEG";
+    if (!fault.empty()) {
+      lost_.insert("image " + shown(map.file) + ", which " + fault);
       return {};
     }
     // Names of images that a surface of this name was written with begin with it.
@@ -399,10 +405,15 @@ void add_mtl_library(TriangleMesh& mesh, const std::vector<std::string>& files, 
   }
   if (!missing.empty())
     notes.push_back("names " + listed(missing) + ", not in its folder; materials of it have names only");
-  if (taken.empty()) return;
-  a.library.glb = std::make_shared<const std::string>(library.bytes());
+  if (!taken.empty()) a.library.glb = std::make_shared<const std::string>(library.bytes());
   if (!library.missing().empty()) notes.push_back("left out: textures not in its folder: " + listed(library.missing()));
   if (!lost.empty()) notes.push_back("left out of its materials: " + listed(lost));
+  std::set<std::string> unknown;
+  for (const std::string& group : a.group_names)
+    if (!taken.contains(group)) unknown.insert(shown(group));
+  unknown.erase("default");  // faces before the first statement
+  if (missing.empty() && !unknown.empty())
+    notes.push_back("names materials that its .mtl does not describe, and which stay names: " + listed(unknown));
 }
 
 }  // namespace geo

@@ -37,6 +37,34 @@ void add_named_materials(SurfaceFile& file, const std::string& name) {
   add_mtl_library(file.mesh, {materials}, name, file.notes);
 }
 
+// Whether a file holds a scan, and not nodes. The ending of its name tells text with points from an
+// OFF file without a keyword; all other content decides by itself.
+bool is_scan(const std::string& bytes, const std::string& name) {
+  constexpr std::size_t header = 4096;
+  const std::string head = bytes.substr(0, header);
+  if (!holds_points(bytes, name) || head.find("radius") != std::string::npos) return false;
+  const bool is_off = looks_like_off(bytes) && head.find("OFF") != std::string::npos;
+  return !is_off && !is_exact_binary_stl(bytes) && !looks_like_obj(bytes) && !looks_like_kerf(bytes) &&
+         other_format(bytes, name).what.empty();
+}
+
+// Texture coordinates that name no place in an image become 0: those that are not finite, and those
+// so large that single precision, which glTF has, tells no two places of an image apart.
+void replace_wild_places(SurfaceFile& file) {
+  constexpr double largest = 0x1p24;
+  std::size_t wild = 0;
+  for (auto* places : {&file.mesh.attributes.uv, &file.mesh.attributes.uv2})
+    for (auto& corners : *places)
+      for (Vec2& uv : corners) {
+        if ((uv.array().abs() <= largest).all()) continue;
+        uv.setZero();
+        ++wild;
+      }
+  if (wild > 0)
+    file.notes.push_back("has " + counted(wild, "corner") +
+                         " with texture coordinates that are not finite or above 2^24; they are put at 0, 0");
+}
+
 // UTF-16 that begins with its byte order mark, as UTF-8 without it; empty for other bytes. Units
 // that are invalid become U+FFFD.
 std::string from_utf16(const std::string& bytes) {
@@ -105,6 +133,9 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
       looks_like_obj(text) || looks_like_off(text) || text.rfind("ply", 0) == 0)
     return parse_surface(text, name);
   SurfaceFile file;
+  if (is_scan(bytes, name))
+    throw InputError(name + ": has points without faces; make a solid of it: kerf-repair " + name +
+                     " -o solid.ply, in Python kerf.reconstruct(*kerf.read_points(path))");
   if (is_exact_binary_stl(bytes))  // whatever its header begins with
     file.mesh = parse_stl(bytes, name, file.notes);
   else if (bytes.rfind("ply", 0) == 0) {
@@ -124,6 +155,7 @@ SurfaceFile parse_surface(const std::string& bytes, const std::string& name) {
     if (!in_range(file.mesh.vertices[v]))
       throw InputError(name + ": vertex " + std::to_string(v) +
                        " has a coordinate that is not a finite number of sensible size; repair the file");
+  replace_wild_places(file);
   if (!file.mesh.two_sided()) weld_seams(file.mesh);
   if (file.mesh.triangles.empty()) throw InputError(name + ": has no triangles; give a closed triangle mesh");
   return file;

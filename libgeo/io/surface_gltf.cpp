@@ -314,6 +314,7 @@ class GltfReader {
     const std::size_t sets = uv2_ ? 2 : uv_ ? 1 : 0;
     auto library = materials_of(document_, materials_, sets);
     if (library.dropped > 0) left_out_.push_back(counted(library.dropped, "texture") + " without texture coordinates");
+    left_out_.insert(left_out_.end(), library.faults.begin(), library.faults.end());
     a.library.glb = std::make_shared<const std::string>(std::move(library.glb));
   }
 

@@ -175,7 +175,7 @@ class ObjReader {
       for (int k = 0; k < 3; ++k) {
         const Corner& corner = corners_[rows_[t][k]];
         const auto& [p, q, r] = mesh_.triangles[t];
-        const bool has_uv = corner.uv != ~0u && uv_[corner.uv].allFinite();
+        const bool has_uv = corner.uv != ~0u;
         const bool has_normal = corner.normal != ~0u && normal_[corner.normal].allFinite();
         if (any_uv_) a.uv[t][k] = has_uv ? uv_[corner.uv] : Vec2(Vec2::Zero());
         if (any_normal_)

@@ -237,7 +237,7 @@ class Reader {
           row[k] = at_vertex[mesh().triangles[t][k]];
       }
       for (int k = 0; k < 3; ++k)
-        if (!row[k].allFinite()) row[k] = fallback(t);
+        if (size != 2 && !row[k].allFinite()) row[k] = fallback(t);  // parse_surface() tells of others
       out.push_back(row);
     }
   }

@@ -6,6 +6,9 @@
 #include <string>
 #include <type_traits>
 
+#include "io/preview_material.h"
+#include "io/usd_material.h"
+#include "io/usd_names.h"
 #include "io/usd_text.h"
 #include "kerf/export.h"
 #include "kerf/parallel.h"
@@ -15,13 +18,41 @@ namespace {
 
 using namespace usd;
 
-std::string subset_of(const TriangleMesh& m, bool crack) {
+std::string subset_of(const TriangleMesh& m, const auto& holds) {
   std::vector<std::size_t> rows;
   for (std::size_t t = 0; t < m.triangles.size(); ++t)
-    if ((patch_of(m, t) != 0) == crack) rows.push_back(t);
+    if (holds(m, t)) rows.push_back(t);
   std::string text;
   add_list(text, rows.size(), [&](std::size_t i) { add_number(text, rows[i]); });
   return text;
+}
+
+bool in_crack(const TriangleMesh& m, std::size_t t) { return patch_of(m, t) != 0; }
+
+// Whether a triangle of the skin is of this group.
+bool in_group(const TriangleMesh& m, std::size_t t, const std::string& group) {
+  const Attributes& a = m.attributes;
+  return !in_crack(m, t) && t < a.group.size() && a.group_names[static_cast<std::size_t>(a.group[t])] == group;
+}
+
+// The materials of the model's groups, with the prims that have them; empty without a library.
+struct RunMaterials {
+  PreviewMaterials library;
+  std::vector<std::string> images;  // files
+  MaterialNames names;
+  std::vector<std::string> groups;  // of the skin
+};
+
+RunMaterials materials_of(const Attributes& attributes) {
+  RunMaterials made;
+  if (!attributes.library.glb || attributes.group.empty()) return made;
+  made.library = preview_materials(attributes.library);
+  made.images = image_file_names(made.library, "run_");
+  for (const char* own : {"crack", "obstacle"}) made.names.of(own);
+  for (const std::string& group : attributes.group_names)
+    if (group != "crack") made.groups.push_back(group);
+  for (const std::string& group : made.groups) made.names.of(group);
+  return made;
 }
 
 using Frames = std::vector<std::size_t>;
@@ -78,7 +109,9 @@ Frames all_frames(const UsdRun& run) {
 }
 
 bool same_rows(const TriangleMesh& a, const TriangleMesh& b) {
-  return a.triangles == b.triangles && a.patch == b.patch && a.attributes.uv == b.attributes.uv;
+  return a.triangles == b.triangles && a.patch == b.patch && a.attributes.uv == b.attributes.uv &&
+         a.attributes.uv2 == b.attributes.uv2 && a.attributes.group == b.attributes.group &&
+         a.attributes.group_names == b.attributes.group_names;
 }
 
 // The arrays that same_rows() compares.
@@ -86,18 +119,20 @@ TriangleMesh rows_of(TriangleMesh&& m) {
   TriangleMesh rows;
   rows.triangles = std::move(m.triangles);
   rows.patch = std::move(m.patch);
-  rows.attributes.uv = std::move(m.attributes.uv);
+  rows.attributes = std::move(m.attributes);
+  rows.attributes.normal.clear();
+  rows.attributes.color.clear();
   return rows;
 }
 
-void add_subset(std::ostream& out, const std::string& name, const Frames& cut, const auto& rows, bool crack) {
+void add_subset(std::ostream& out, const std::string& name, const Frames& cut, const auto& rows, const auto& holds) {
   out << "\n        def GeomSubset \"" << name
       << "\" (\n            prepend apiSchemas = [\"MaterialBindingAPI\"]\n        )\n        {\n"
       << "            uniform token elementType = \"face\"\n            uniform token familyName = \"materialBind\"\n  "
          "          rel material:binding = </run/materials/"
       << name << ">\n";
   add_samples(out, "            ", "int[] indices", cut, rows,
-              [&](const TriangleMesh& m) { return subset_of(m, crack); });
+              [&](const TriangleMesh& m) { return subset_of(m, holds); });
   out << "        }\n";
 }
 
@@ -110,6 +145,24 @@ void add_material(std::ostream& out, const std::string& name, const std::string&
       << color
       << "\n                float inputs:roughness = 0.6\n                token outputs:surface\n            }\n       "
          " }\n";
+}
+
+// The materials of the model's groups as preview surfaces.
+void add_described(std::ostream& out, RunMaterials& materials) {
+  std::size_t depth = 2;
+  const auto line = [&](const std::string& text) {
+    if (text == "}") --depth;
+    out << std::string(4 * depth, ' ') << text << '\n';
+    if (text == "{") ++depth;
+  };
+  std::vector<std::string> all = materials.groups;
+  all.push_back("crack");
+  for (const std::string& group : all) {
+    PreviewMaterial described = plain_material(group);
+    for (const PreviewMaterial& known : materials.library.materials)
+      if (known.name == group) described = known;
+    write_material(line, "/run/materials", materials.names.of(group), described, materials.images);
+  }
 }
 
 void begin_mesh(std::ostream& out, const std::string& name, const std::string& material) {
@@ -126,13 +179,15 @@ void write_usda(std::ostream& out, const UsdRun& run) {
       << "\"\n    startTimeCode = 0\n    endTimeCode = " << (run.frames > 0 ? run.frames - 1 : 0)
       << "\n    timeCodesPerSecond = " << run.frame_rate
       << "\n)\n\ndef Xform \"run\" (\n    kind = \"component\"\n)\n{\n";
-  const Vec3 offset = run.frames > 0 ? single_precision_offset(bounding_box(run.surface(0))) : Vec3(Vec3::Zero());
+  const TriangleMesh first_frame = run.frames > 0 ? run.surface(0) : TriangleMesh();
+  const Vec3 offset = run.frames > 0 ? single_precision_offset(bounding_box(first_frame)) : Vec3(Vec3::Zero());
+  RunMaterials materials = materials_of(first_frame.attributes);
   if (!offset.isZero(0)) {
     std::string text;
     add_translation(text, "    ", offset);
     out << text;
   }
-  begin_mesh(out, "body", "skin");
+  begin_mesh(out, "body", materials.groups.empty() ? "skin" : materials.names.of(materials.groups[0]));
   out << "        uniform token subsetFamily:materialBind:familyType = \"partition\"\n";
   constexpr std::size_t max_kept = 16;       // larger: more memory, fewer frames are read twice
   Frames cut;                                // whose triangles differ from those of the frame before
@@ -161,12 +216,20 @@ void write_usda(std::ostream& out, const UsdRun& run) {
   body("int[] faceVertexIndices", corners_of_triangles);
   out << "        int[] primvars:patch (\n            interpolation = \"uniform\"\n        )\n";
   body("int[] primvars:patch", patches_of);
-  if (!last.attributes.uv.empty()) {
-    out << "        texCoord2f[] primvars:st (\n            interpolation = \"faceVarying\"\n        )\n";
-    body("texCoord2f[] primvars:st", [](const TriangleMesh& m) { return uv_of(m.attributes.uv); });
-  }
-  add_subset(out, "skin", cut, rows, false);
-  add_subset(out, "crack", cut, rows, true);
+  const auto places = [&](const std::string& name, auto Attributes::*member) {
+    if ((last.attributes.*member).empty()) return;
+    const std::string declaration = "texCoord2f[] primvars:" + name;
+    out << "        " << declaration << " (\n            interpolation = \"faceVarying\"\n        )\n";
+    body(declaration, [&](const TriangleMesh& m) { return uv_of(m.attributes.*member); });
+  };
+  places("st", &Attributes::uv);
+  places("st1", &Attributes::uv2);
+  if (materials.groups.empty())
+    add_subset(out, "skin", cut, rows, [](const TriangleMesh& m, std::size_t t) { return !in_crack(m, t); });
+  for (const std::string& group : materials.groups)
+    add_subset(out, materials.names.of(group), cut, rows,
+               [&](const TriangleMesh& m, std::size_t t) { return in_group(m, t, group); });
+  add_subset(out, "crack", cut, rows, in_crack);
   out << "    }\n";
   if (run.frames > 0 && run.obstacles) {
     out << '\n';
@@ -179,8 +242,12 @@ void write_usda(std::ostream& out, const UsdRun& run) {
     out << "    }\n";
   }
   out << "\n    def Scope \"materials\"\n    {\n";
-  add_material(out, "skin", "(0.75, 0.22, 0.04)");
-  add_material(out, "crack", "(0.86, 0.66, 0.2)");
+  if (materials.groups.empty()) {
+    add_material(out, "skin", "(0.75, 0.22, 0.04)");
+    add_material(out, "crack", "(0.86, 0.66, 0.2)");
+  } else {
+    add_described(out, materials);
+  }
   if (run.obstacles) add_material(out, "obstacle", "(0.42, 0.43, 0.45)");
   out << "    }\n}\n";
 }

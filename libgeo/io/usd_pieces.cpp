@@ -9,6 +9,7 @@
 #include "io/piece_json.h"
 #include "io/preview_material.h"
 #include "io/usd_material.h"
+#include "io/usd_names.h"
 #include "io/usd_text.h"
 #include "kerf/error.h"
 #include "kerf/export.h"
@@ -17,17 +18,6 @@ namespace geo {
 namespace {
 
 using namespace usd;
-
-// A letter or underscore, then letters, digits and underscores: what a prim may be called.
-std::string identifier(const std::string& name) {
-  std::string id;
-  for (const char c : name) {
-    const bool digit = c >= '0' && c <= '9', letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (digit && id.empty()) id = "_";
-    id += digit || letter ? c : '_';
-  }
-  return id.empty() ? "_" : id;
-}
 
 // The text of a stage: prims with braces, each line indented by its depth.
 class UsdStage {
@@ -60,22 +50,6 @@ class UsdStage {
  private:
   std::ostream& out_;
   std::size_t depth_ = 0;
-};
-
-// Unique names of materials, by group.
-class MaterialNames {
- public:
-  const std::string& of(const std::string& group) {
-    const auto [entry, fresh] = names_.try_emplace(group);
-    if (!fresh) return entry->second;
-    std::string name = identifier(group);
-    while (!taken_.emplace(name, group).second) name += '_';
-    return entry->second = name;
-  }
-  const std::map<std::string, std::string>& all() const { return names_; }
-
- private:
-  std::map<std::string, std::string> names_, taken_;
 };
 
 class UsdPieces {

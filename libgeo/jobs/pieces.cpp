@@ -2,6 +2,7 @@
 #include <ostream>
 #include <span>
 
+#include "crack/insert.h"
 #include "kerf/check.h"
 #include "kerf/complex.h"
 #include "kerf/error.h"
@@ -42,21 +43,27 @@ PieceSet pieces_of(const Complex& complex, const TriangleMesh& model) {
 }
 
 PieceSet fracture(const TriangleMesh& model, const ScoreOptions& options, const Progress& progress) {
-  Complex complex = complex_of(model);
-  const Score score = make_score(complex, options, progress);
-  insert_sheet(complex, score.sheet, complex.crack_count() + 1);
-  return pieces_of(complex, model);
+  Complex cut;
+  make_score(complex_of(model), options, progress, &cut);
+  return pieces_of(cut, model);
 }
 
-PieceSet cut(const TriangleMesh& model, const TriangleMesh& sheet, const CrackOptions& options) {
+CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
+                        CrackStats* stats, const Progress& progress) {
+  return crack::insert_sheet_with_pauses(complex, sheet, crack, options, stats,
+                                         [&] { report(progress, "crack", 0, 1); });
+}
+
+PieceSet cut(const TriangleMesh& model, const TriangleMesh& sheet, const CrackOptions& options,
+             const Progress& progress) {
   Complex complex = complex_of(model);
-  insert_sheet(complex, sheet, complex.crack_count() + 1, options);
+  insert_sheet(complex, sheet, complex.crack_count() + 1, options, nullptr, progress);
   return pieces_of(complex, model);
 }
 
 PieceSet cut(const TriangleMesh& model, const Front& front, const CrackOptions& options, const Progress& progress) {
   if (front.steps.empty()) throw InputError("the front '" + front.name + "' has no points");
-  if (front.is_sheet()) return cut(model, sheet_of(front), options);
+  if (front.is_sheet()) return cut(model, sheet_of(front), options, progress);
   if (front.steps.size() < 2) throw InputError("the front '" + front.name + "' has one step; give two at least");
   Complex complex = complex_of(model);
   FrontState state = begin_front(front.steps[0], front.closed, complex.crack_count() + 1);

@@ -129,15 +129,16 @@ TriangleMesh wheel(const Box3& box, int cells, const PatternOptions& o) {
   return raised_walls(points, segments, along.lo.z() - margin, along.hi.z() + margin, frame);
 }
 
-TriangleMesh cells_of_sites(const TriangleBvh& skin, int cells, const PatternOptions& o) {
+TriangleMesh cells_of_sites(const TriangleBvh& skin, int cells, const PatternOptions& o,
+                            const std::function<void()>& pause) {
   Mat3 stretch = Mat3::Identity();
   if (o.pattern == Pattern::wood) {
     const Vec3 axis = axis_of(skin.box(), o).normalized();
     stretch -= (1 - 1 / o.grain) * axis * axis.transpose();
   }
-  const auto sites = sample_sites(skin, cells, stretch, o);
+  const auto sites = sample_sites(skin, cells, stretch, o, pause);
   if (sites.size() < 2) return {};
-  TriangleMesh walls = voronoi_walls(sites, box_along(widened(skin.box()), stretch.transpose()));
+  TriangleMesh walls = voronoi_walls(sites, box_along(widened(skin.box()), stretch.transpose()), pause);
   const Mat3 back = stretch.inverse();
   for (Vec3& p : walls.vertices) p = back * p;
   return walls;
@@ -204,7 +205,8 @@ Density relative_density(const TriangleBvh& skin, const Density& density) {
   return [checked, largest](const Vec3& p) { return std::min(1.0, checked(p) / largest); };
 }
 
-std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& stretch, const PatternOptions& o) {
+std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& stretch, const PatternOptions& o,
+                               const std::function<void()>& pause) {
   Random random(o.seed);
   const Box3& box = skin.box();
   const double diagonal = box.diagonal();
@@ -218,6 +220,7 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
   std::vector<Vec3> sites;
   const auto candidate = [&](Vec3& p) {
     for (int tries = 0; tries < 100000; ++tries) {
+      if (pause && tries % 256 == 0) pause();
       for (int k = 0; k < 3; ++k) p[k] = random.uniform(box.lo[k], box.hi[k]);
       // Density is spacing⁻³; candidates are accepted in proportion to it, with 1 at the impact.
       const bool accepted = !o.impact || random.uniform() * std::pow(spacing(p), 3) < closest * closest * closest;
@@ -247,7 +250,8 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
   return sites;
 }
 
-TriangleMesh pattern_walls(const TriangleBvh& skin, int cells, const PatternOptions& o) {
+TriangleMesh pattern_walls(const TriangleBvh& skin, int cells, const PatternOptions& o,
+                           const std::function<void()>& pause) {
   const Box3& box = skin.box();
   switch (o.pattern) {
     case Pattern::planes:
@@ -255,7 +259,7 @@ TriangleMesh pattern_walls(const TriangleBvh& skin, int cells, const PatternOpti
       return planes(box, cells, o);
     case Pattern::voronoi:
     case Pattern::wood:
-      return cells_of_sites(skin, cells, o);
+      return cells_of_sites(skin, cells, o, pause);
     case Pattern::radial:
     case Pattern::glass:
       return wheel(box, cells, o);

@@ -83,7 +83,7 @@ class Scoring {
     PatternOptions pattern = o_.pattern;
     pattern.seed = t.seed;
     pattern.density = density_;
-    return pattern_walls(skin_, t.cells, pattern);
+    return pattern_walls(skin_, t.cells, pattern, [this] { pause(); });
   }
   double distance_from_wanted(std::uint32_t pieces) const {
     return pieces == 0 ? 1e300 : std::abs(double(pieces) - o_.pieces);
@@ -161,7 +161,7 @@ class Scoring {
   Complex cut_by(const TriangleMesh& walls) const {
     pause();
     Complex cut = model_;
-    insert_sheet(cut, walls, new_crack());
+    crack::insert_sheet_with_pauses(cut, walls, new_crack(), {}, nullptr, [this] { pause(); });
     return cut;
   }
 
@@ -169,7 +169,7 @@ class Scoring {
   Complex roughly_cut_by(const TriangleMesh& walls) const {
     pause();
     Complex cut = model_;
-    crack::insert_unguarded(cut, walls, new_crack());
+    crack::insert_unguarded(cut, walls, new_crack(), [this] { pause(); });
     return cut;
   }
 

@@ -151,12 +151,13 @@ bool clip(Cell& cell, std::uint32_t site, std::uint32_t other, Corners& corners)
 
 // All walls; none when the sites are in degenerate position for names of four. A vertex loses about
 // as many digits as the edges at it are short: half of all digits must remain.
-std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& box) {
+std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& box, const std::function<void()>& pause) {
   const auto count = static_cast<std::uint32_t>(sites.size());
   Corners corners(sites, box);
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Name>> walls;
   std::size_t matched = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
+    if (pause) pause();
     std::vector<std::pair<double, std::uint32_t>> others;
     for (std::uint32_t j = 0; j < count; ++j)
       if (j != i) others.push_back({(sites[j] - sites[i]).squaredNorm(), j});
@@ -206,7 +207,7 @@ std::optional<TriangleMesh> walls_of(std::span<const Vec3> sites, const Box3& bo
 
 }  // namespace
 
-TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box) {
+TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box, const std::function<void()>& pause) {
   if (sites.size() < 2) throw InputError("Voronoi cells need at least two sites");
   for (const Vec3& s : sites)
     if (!Box3{s, s}.meets(box)) throw InputError("a site is outside of the box");
@@ -219,7 +220,7 @@ TriangleMesh voronoi_walls(std::span<const Vec3> sites, const Box3& box) {
   Random random(sites.size());
   // Displacements of 2⁻¹⁶ … 2⁻⁷ of the diagonal: the first that helps is used.
   for (double by = 0x1p-16 * box.diagonal(); by < 0x1p-6 * box.diagonal(); by *= 2) {
-    if (auto walls = walls_of(moved, box)) return *walls;
+    if (auto walls = walls_of(moved, box, pause)) return *walls;
     for (std::size_t i = 0; i < moved.size(); ++i)
       moved[i] = (sites[i] + by * random.direction()).cwiseMax(box.lo).cwiseMin(box.hi);
   }

@@ -48,6 +48,8 @@ def write_level_set(path, mesh, voxel, fog=False):
 
 def _save_score(self, path):
     """Writes the walls as one sheet to a front file, which `[[score]]` of a scene and kerf-crack read. Raises OutputError."""
+    if not isinstance(self, _kerf.Score):  # called through the class
+        raise TypeError(f"save() is a method of Score, and got a {type(self).__name__}")
     _kerf.save_fronts(path, _kerf.Front([self.sheet.vertices], name="score", triangles=self.sheet.faces))
 
 

@@ -270,8 +270,8 @@ Subject subject_from(py::handle object, const std::string& name) {
     if (!out.model) out.model = std::make_shared<Mesh>(out.complex.two_sided());
     return out;
   }
-  const bool known = py::isinstance<Solid>(object);
   auto mesh = mesh_argument(object, name);
+  const bool known = mesh->is_model();
   return without_gil([&] {
     if (!known) geo::require_solid(mesh->mesh);
     return Subject{geo::Complex::from_two_sided(mesh->mesh), std::move(mesh)};

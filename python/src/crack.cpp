@@ -4,6 +4,7 @@
 #include "bind.h"
 #include "fronts.h"
 #include "kerf/error.h"
+#include "kerf/jobs.h"
 #include "mesh_space.h"
 #include "options.h"
 #include "score.h"
@@ -13,10 +14,16 @@ namespace {
 
 using Shared = std::shared_ptr<Complex>;
 
-std::shared_ptr<Delta> insert(Complex& self, const geo::TriangleMesh& sheet, const geo::CrackOptions& options) {
+std::shared_ptr<Delta> insert(Complex& self, const geo::TriangleMesh& sheet, const geo::CrackOptions& options,
+                              ProgressReport& progress) {
   geo::CrackStats work;
+  const Writing writing(self.busy);
   const auto crack = self.next_crack();
-  auto delta = self.edit({}, true, [&] { return geo::insert_sheet(self.complex, sheet, crack, options, &work); });
+  auto delta = self.edit_held({}, true, [&] {
+    return progress.run([&](const geo::Progress& report) {
+      return geo::insert_sheet(self.complex, sheet, crack, options, &work, report);
+    });
+  });
   delta->stats = dict_of(work);
   return delta;
 }
@@ -37,7 +44,7 @@ void sweep(const Shared& self, const geo::Front& front, const geo::CrackOptions&
   };
   tell(0);
   if (front.is_sheet()) {
-    insert(*self, sheet_of(front), options);
+    insert(*self, sheet_of(front), options, progress);
     return tell(1);
   }
   LiveFront live{self, nullptr};
@@ -133,7 +140,7 @@ std::shared_ptr<Mesh> mesh_of_pair(const py::sequence& pair) {
 void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& options, double max_move,
               ProgressReport& progress) {
   if (is_sheet(what)) {
-    insert(*self, sheet_argument(what, *self)->mesh, options);
+    insert(*self, sheet_argument(what, *self)->mesh, options, progress);
     return;
   }
   if (py::isinstance<py::list>(what) || py::isinstance<py::tuple>(what)) {
@@ -145,7 +152,7 @@ void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& opti
     }
     if (py::len(what) == 2)
       if (const auto sheet = mesh_of_pair(py::reinterpret_borrow<py::sequence>(what))) {
-        insert(*self, sheet->mesh, options);
+        insert(*self, sheet->mesh, options, progress);
         return;
       }
   }
@@ -238,7 +245,8 @@ void bind_crack(py::module_& module) {
             const auto options = crack_options(keywords);
             keywords.finish();
             const auto mesh = sheet_argument(sheet, self);
-            return insert(self, mesh->mesh, options);
+            ProgressReport no_report{py::none()};
+            return insert(self, mesh->mesh, options, no_report);
           },
           py::arg("sheet"),
           "Inserts the parts of a sheet (a Mesh, a Plane or a Score) in the material as one crack, in one step, and "

@@ -23,6 +23,11 @@ py::object Keywords::object(const char* name) {
   return left_.attr("pop")(name);
 }
 
+void Keywords::require(const char* name, const char* companion) const {
+  if (given(name) && !given(companion))
+    throw geo::InputError(call_ + ": " + name + " changes nothing without " + companion + "; give both");
+}
+
 void Keywords::take(const char* name, double& out, double least, double greatest) {
   const py::object value = object(name);
   if (value.is_none()) return;

@@ -31,6 +31,10 @@ class Keywords {
   void seed(const char* name, std::uint64_t& out);
   /// True or False. Throws py::type_error.
   void flag(const char* name, bool& out);
+  /// Whether an argument is given and not taken yet.
+  bool given(const char* name) const { return left_.contains(name); }
+  /// Throws geo::InputError where `name` is given without `companion`, which it says more about.
+  void require(const char* name, const char* companion) const;
   /// Any object; none where it is not given.
   py::object object(const char* name);
 

@@ -20,6 +20,8 @@ struct Mesh {
   virtual ~Mesh() = default;
   const geo::TriangleMesh mesh;     ///< as given
   std::shared_ptr<Solid> as_model;  ///< kept by model_of(); null until then
+  /// Whether it was found to be a valid model without a patch.
+  virtual bool is_model() const { return false; }
 };
 
 /// A valid model: closed, manifold, oriented outwards, free of self-intersection.
@@ -28,6 +30,7 @@ struct Solid : Mesh {
   explicit Solid(geo::TriangleMesh m, bool known = false);
   /// Its crack complex without cracks, made at the first call. To be called with the GIL.
   std::shared_ptr<const geo::Complex> uncut();
+  bool is_model() const override { return true; }
 
  private:
   std::shared_ptr<const geo::Complex> uncut_;
@@ -37,9 +40,13 @@ struct Solid : Mesh {
 /// is none.
 std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh);
 
-/// The model of a mesh: itself where it is a Solid, else a Solid of its triangles and attributes,
+/// The model of a mesh: itself where it is_model(), else a Solid of its triangles and attributes,
 /// checked once. Throws as solid_or_remedy(), and for a cut surface. To be called with the GIL.
 std::shared_ptr<Solid> model_of(const std::shared_ptr<Mesh>& mesh);
+
+/// The mesh with edges of at most `longest`, model units. Throws InputError for a two-sided mesh,
+/// and where that would make more than 20 million triangles. To be called with the GIL.
+geo::TriangleMesh refined_mesh(const Mesh& mesh, double longest);
 
 /// The arrays of a mesh as Python gives them; None where there is none.
 struct MeshArguments {

@@ -67,15 +67,6 @@ std::pair<Shared, geo::RepairStats> repaired(const Mesh& self, double weld, bool
   });
 }
 
-geo::TriangleMesh refined(const Mesh& self, double longest) {
-  plain(self, "refine");
-  if (!(longest > 0)) throw geo::InputError("refine: longest must be positive");
-  // A triangle with edges of that length has at most the area of the equilateral one.
-  if (geo::area(self.mesh) > 20e6 * 0.25 * std::sqrt(3.0) * longest * longest)
-    throw geo::InputError("refine: edges so short would make more than 20 million triangles; let them be longer");
-  return without_gil([&] { return geo::refined(self.mesh, longest); });
-}
-
 // As geo::repaired_solid(), with a remedy in the message.
 Shared united(const Shared& self, const geo::RepairOptions& options, const py::object& progress) {
   ProgressReport report(progress);
@@ -110,7 +101,7 @@ std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool
                .cast<Shared>();
   else
     mesh = united(mesh, options, progress);
-  if (longest != 0) mesh = std::make_shared<Mesh>(refined(*mesh, longest));
+  if (longest != 0) mesh = std::make_shared<Mesh>(refined_mesh(*mesh, longest));
   try {
     const bool known = longest == 0;  // valid, by repaired_solid() or wrapped_solid()
     return std::make_shared<Solid>(std::move(mesh->mesh), known);
@@ -236,7 +227,8 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
           "parts enclose nothing: see repair(). Vertices of triangles that cross nothing stay bit for bit; attributes\n"
           "are interpolated. Returns a Mesh. Raises InputError, and GeometryError where nothing is enclosed.")
       .def(
-          "refine", [](const Mesh& self, double longest) { return std::make_shared<Mesh>(refined(self, longest)); },
+          "refine",
+          [](const Mesh& self, double longest) { return std::make_shared<Mesh>(refined_mesh(self, longest)); },
           py::arg("longest"),
           "A plain mesh with edges of at most `longest`, model units: longer ones are bisected. The shape stays to\n"
           "rounding; attributes are interpolated. Raises InputError where over 20 million triangles would result.")
@@ -269,6 +261,15 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
 
 }  // namespace
 
+geo::TriangleMesh refined_mesh(const Mesh& self, double longest) {
+  plain(self, "refine");
+  if (!(longest > 0)) throw geo::InputError("refine: longest must be positive");
+  // A triangle with edges of that length has at most the area of the equilateral one.
+  if (geo::area(self.mesh) > 20e6 * 0.25 * std::sqrt(3.0) * longest * longest)
+    throw geo::InputError("refine: edges so short would make more than 20 million triangles; let them be longer");
+  return without_gil([&] { return geo::refined(self.mesh, longest); });
+}
+
 void bind_mesh_methods(py::module_& module) {
   bind_repair_stats(module);
   py::class_<Mesh, Shared> mesh(module.attr("Mesh"));
@@ -277,7 +278,8 @@ void bind_mesh_methods(py::module_& module) {
   py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
       .def(py::init(&checked_solid), py::arg("mesh"), "Of a Mesh, or an object with vertices and faces.")
       .def(
-          "refine", [](const Solid& self, double longest) { return std::make_shared<Solid>(refined(self, longest)); },
+          "refine",
+          [](const Solid& self, double longest) { return std::make_shared<Solid>(refined_mesh(self, longest)); },
           py::arg("longest"), "As Mesh.refine(); the result is checked to be a valid model.")
       .def_static(
           "repaired", &repaired_solid, py::arg("mesh"), py::arg("weld") = 0.0, py::arg("smooth") = false,

@@ -221,7 +221,7 @@ void bind_mesh_space(py::module_& module) {
             return std::make_shared<Solid>(transformed(self.mesh, affine_from(matrix)));
           },
           py::arg("matrix"), of_solid.c_str());
-  py::class_<Piece, Mesh, std::shared_ptr<Piece>>(module.attr("Piece"))
+  py::class_<Piece, Solid, std::shared_ptr<Piece>>(module.attr("Piece"))
       .def("transformed", &transformed_piece, py::arg("matrix"), of_piece.c_str());
 }
 

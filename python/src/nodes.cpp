@@ -138,7 +138,7 @@ std::shared_ptr<const Mesh> solid_argument(py::handle object, const std::string&
     return without_gil([&] { return std::make_shared<Mesh>(complex.complex.two_sided()); });
   }
   auto mesh = mesh_argument(object, name);
-  if (py::isinstance<Solid>(object)) return mesh;
+  if (mesh->is_model()) return mesh;
   const GilRelease release;
   try {
     geo::require_solid(mesh->mesh);

@@ -129,7 +129,7 @@ void bind_meshes(py::module_& module) {
   py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
       .def(py::pickle([](const Solid& self) { return state_of(self.mesh); },
                       [](const py::tuple& state) { return std::make_shared<Solid>(mesh_of_state(state), true); }));
-  py::class_<Piece, Mesh, std::shared_ptr<Piece>>(module.attr("Piece"))
+  py::class_<Piece, Solid, std::shared_ptr<Piece>>(module.attr("Piece"))
       .def(py::pickle(
           [](const Piece& self) {
             py::list hulls;

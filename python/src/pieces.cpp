@@ -96,13 +96,22 @@ py::array bonds_of(Complex& self, const py::object& moved) {
 }
 
 void bind_piece(py::module_& module) {
-  py::class_<Piece, Mesh, std::shared_ptr<Piece>>(
+  py::class_<Piece, Solid, std::shared_ptr<Piece>>(
       module, "Piece",
-      "A piece of a cut model: the closed boundary of a connected region of material (§ 7). A Mesh whose patch is 0 "
-      "on\n"
-      "the skin and whose source names the triangle of the model, 2**32 - 1 on cracks. Inner faces have the group\n"
-      "\"crack\" and texture coordinates.")
+      "A piece of a cut model: the closed boundary of a connected region of material (§ 7). A Solid whose patch is 0\n"
+      "on the skin and whose source names the triangle of the model, 2**32 - 1 on cracks. Inner faces have the group\n"
+      "\"crack\" and texture coordinates. Where a crack ends inside the piece, its two sides are at one place: calls\n"
+      "that need a valid model then raise InputError.")
       .def_readonly("index", &Piece::index, "Its number among the pieces, in descending order of volume.")
+      .def(
+          "refine",
+          [](const Piece& self, double longest) {
+            geo::Chunk chunk{refined_mesh(self, longest), self.volume, self.centroid};
+            auto out = std::make_shared<Piece>(std::move(chunk), self.index);
+            out->hulls = self.hulls;
+            return out;
+          },
+          py::arg("longest"), "As Mesh.refine(): the same piece, with its hulls.")
       .def_readonly("volume", &Piece::volume, "Volume, model units cubed.")
       .def_property_readonly(
           "centroid", [](const Piece& self) { return point(self.centroid); }, "Centroid of the material, (3,) float64.")

@@ -63,6 +63,17 @@ std::vector<geo::TriangleMesh> sheets_from(const py::object& sheets) {
   return out;
 }
 
+// The number that a callable of the argument density returned. Throws InputError for anything else.
+double density_value(const py::object& value) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (!PyErr_Occurred()) return number;
+  if (!PyErr_ExceptionMatches(PyExc_TypeError) && !PyErr_ExceptionMatches(PyExc_ValueError))
+    throw py::error_already_set();
+  PyErr_Clear();
+  throw geo::InputError("density: the callable returned " + py::repr(value).cast<std::string>().substr(0, 60) +
+                        "; let it return one number, at least 0");
+}
+
 // A Python callable of a point. Its first error ends the search, and is rethrown there.
 struct PythonDensity {
   py::object callable;
@@ -71,7 +82,7 @@ struct PythonDensity {
   double operator()(const geo::Vec3& p) {
     const GilAcquire gil;
     try {
-      return py::float_(callable(point(p)));
+      return density_value(callable(point(p)));
     } catch (...) {
       error = std::current_exception();
     }
@@ -144,6 +155,9 @@ void add_image(Keywords& keywords, const geo::Box3& box, geo::ScoreOptions& o) {
 geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords, const geo::Box3& box) {
   geo::ScoreOptions o;
   o.pattern.pattern = geo::pattern_named(pattern);
+  keywords.require("edge_width", "edge_detail");
+  keywords.require("chip_size", "chips");
+  for (const char* of_image : {"up", "fit", "tolerance"}) keywords.require(of_image, "image");
   keywords.take("pieces", o.pieces, 1, 1000000);
   keywords.take("attempts", o.attempts, 1, 1000000);
   keywords.take("depth", o.depth, 0, 1);
@@ -165,22 +179,24 @@ geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords, c
   if (const auto impact = keywords.object("impact"); !impact.is_none()) o.pattern.impact = point_from(impact, "impact");
   if (const auto curves = keywords.object("curves"); !curves.is_none()) o.pattern.curves = curves_from(curves);
   if (const auto sheets = keywords.object("sheets"); !sheets.is_none()) o.pattern.sheets = sheets_from(sheets);
+  const bool curves = o.pattern.pattern == geo::Pattern::curves;
+  if (!curves && (!o.pattern.curves.empty() || keywords.given("image")))
+    throw geo::InputError("score: the arguments curves and image go with pattern='curves'; give that");
   add_image(keywords, box, o);
-  if ((o.pattern.pattern == geo::Pattern::curves) == o.pattern.curves.empty())
-    throw geo::InputError("score: the pattern 'curves' goes with the argument curves or image");
+  if (curves && o.pattern.curves.empty())
+    throw geo::InputError("score: the pattern 'curves' needs the argument curves or image");
   if ((o.pattern.pattern == geo::Pattern::sheets) == o.pattern.sheets.empty())
     throw geo::InputError("score: the pattern 'sheets' and the argument sheets go together");
   return o;
 }
 
-std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& pattern, py::object progress,
-                                   py::kwargs given) {
+// The score of a model, and, where `cut` is given, the model cut along it.
+std::shared_ptr<ScoreResult> make(const geo::Complex& complex, py::handle model, const std::string& pattern,
+                                  ProgressReport& report, py::kwargs given, geo::Complex* cut = nullptr) {
   Keywords keywords(std::move(given), "score");
   PythonDensity python;
   const auto density = keywords.object("density");
-  ProgressReport report(std::move(progress));
-  const ModelReading reading(model, "model");
-  auto options = options_from(pattern, keywords, reading.complex().extent());
+  auto options = options_from(pattern, keywords, complex.extent());
   keywords.finish();
   options.pattern.density = density_from(density, model, python);
   if (options.pattern.density && options.pattern.pattern != geo::Pattern::voronoi &&
@@ -188,8 +204,7 @@ std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& p
     throw geo::InputError("density: goes with the patterns voronoi and wood");
   geo::Score made;
   try {
-    made = report.run(
-        [&](const geo::Progress& progress) { return geo::make_score(reading.complex(), options, progress); });
+    made = report.run([&](const geo::Progress& progress) { return geo::make_score(complex, options, progress, cut); });
   } catch (const geo::Interrupted&) {
     if (python.error) std::rethrow_exception(python.error);
     throw;
@@ -200,12 +215,22 @@ std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& p
                                                    .attempts = made.attempts});
 }
 
-py::object fracture(const py::object& self, const py::object& pieces, const std::string& pattern,
+std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& pattern, py::object progress,
+                                   py::kwargs given) {
+  ProgressReport report(std::move(progress));
+  const ModelReading reading(model, "model");
+  return make(reading.complex(), model, pattern, report, std::move(given));
+}
+
+py::object fracture(const std::shared_ptr<Mesh>& self, const py::object& pieces, const std::string& pattern,
                     const py::object& progress, py::kwargs given) {
   given["pieces"] = pieces;
-  const auto walls = score(self, pattern, progress, std::move(given));
-  const py::object cut = self.attr("crack")(walls, py::arg("progress") = progress);
-  return cut.attr("pieces")(py::arg("progress") = progress);
+  ProgressReport report(progress);
+  const auto model = model_of(self);
+  geo::Complex cut;
+  make(*model->uncut(), py::cast(self), pattern, report, std::move(given), &cut);
+  const auto made = std::make_shared<Complex>(std::move(cut), model);
+  return py::cast(made).attr("pieces")(py::arg("progress") = progress);
 }
 
 }  // namespace
@@ -226,7 +251,8 @@ void bind_score(py::module_& module) {
       .def("fracture", &fracture, py::arg("pieces") = geo::ScoreOptions{}.pieces, py::arg("pattern") = "voronoi",
            py::arg_v("progress", py::none()),
            "The pieces of the model broken by a pattern, a list of Piece in descending order of volume:\n"
-           "crack(kerf.score(self, pattern, pieces=pieces)).pieces(). Keywords as for kerf.score(): seed, jagged and "
+           "those of crack(kerf.score(self, pattern, pieces=pieces)).pieces(), found faster. Keywords as for "
+           "kerf.score(): seed, jagged and "
            "so on.\n"
            "Raises InputError where the mesh is no valid model, and as these.");
   module.attr("PATTERNS") =

@@ -9,6 +9,7 @@
 
 #include "arguments.h"
 #include "bind.h"
+#include "kerf/appearance.h"
 #include "kerf/body_file.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
@@ -179,6 +180,7 @@ RunModels models_of(const geo::Scene& scene, const Meshes& given) {
   }
   out.fingerprint = geo::fingerprint(hashes);
   out.placed = geo::place_models(scene, std::move(meshes));
+  if (out.placed.bodies.size() > 1) out.placed.all.attributes = geo::joined_attributes(out.placed.bodies);
   return out;
 }
 

@@ -45,9 +45,10 @@ geo::FrameNodes frame_nodes(const geo::Simulation& run) {
   return out;
 }
 
-// The model whose attributes frames carry: several bodies have no common ones.
+// The model whose attributes frames carry; null: several bodies have none.
 const geo::TriangleMesh* model_of(const Simulation& self) {
-  return self.models.placed.bodies.size() == 1 ? &self.models.placed.all : nullptr;
+  const geo::PlacedModels& placed = self.models.placed;
+  return placed.bodies.size() == 1 || !placed.all.attributes.empty() ? &placed.all : nullptr;
 }
 
 py::object moved_vectors(std::vector<geo::Vec3>&& v) { return moved_points(std::move(v)); }

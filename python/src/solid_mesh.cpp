@@ -22,7 +22,7 @@ std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh) {
 }
 
 std::shared_ptr<Solid> model_of(const std::shared_ptr<Mesh>& mesh) {
-  if (auto solid = std::dynamic_pointer_cast<Solid>(mesh)) return solid;
+  if (mesh->is_model()) return std::static_pointer_cast<Solid>(mesh);
   if (mesh->mesh.two_sided()) throw geo::InputError("the mesh is cut already; give it to kerf.Complex()");
   if (!mesh->as_model) {
     geo::TriangleMesh whole = mesh->mesh;

@@ -301,6 +301,34 @@ def test_chips():
     assert faces > 2 * sum(len(piece.data.polygons) for piece in scenes.check_pieces(found, 5))
 
 
+def test_density():
+    """A vertex group says where pieces are small; an object without it is refused."""
+    found = box()
+    select(found)
+    with_cuts = found.modifiers.new("fine", "SUBSURF")
+    with_cuts.subdivision_type, with_cuts.levels = "SIMPLE", 3
+    bpy.ops.object.modifier_apply(modifier="fine")
+    group = found.vertex_groups.new(name="small")
+    middle = sum(v.co.z for v in found.data.vertices) / len(found.data.vertices)
+    high = []
+    for above, below in ((1.0, 0.05), (0.05, 1.0)):
+        for vertex in found.data.vertices:
+            group.add([vertex.index], above if vertex.co.z > middle else below, "REPLACE")
+        select(found)
+        fracture(pieces=24, seed=3, jagged=0, density_group="small", hide_original=False)
+        pieces = scenes.check_pieces(found, 24)
+        tops = [max((found.matrix_world.inverted() @ piece.matrix_world @ v.co).z for v in piece.data.vertices) for piece in pieces]
+        high.append(sum(top > middle + 0.1 * max(tops) for top in tops))  # where cells are few below, those above reach down
+    assert high[0] > 0.8 * 24 and high[1] < 0.7 * 24, high
+    select(found)
+    try:
+        fracture(pieces=4, density_group="none", hide_original=False)
+    except RuntimeError as error:
+        assert "no vertex group 'none'" in str(error), error
+    else:
+        raise AssertionError("a group that is not there is taken")
+
+
 def test_patterns():
     found = box()
     select(found)
@@ -443,7 +471,7 @@ def test_refused():
     select(first, second)
     bpy.ops.object.join()
     select(first)
-    refused(bpy.ops.object.kerf_fracture, "intersect")
+    refused(bpy.ops.object.kerf_fracture, "press Repair in the Kerf tab")
     assert bpy.ops.object.kerf_repair() == {"FINISHED"}
     assert abs(scenes.volume(first) - 15) < 1e-5
     assert bpy.ops.object.kerf_repair(voxel=0.01) == {"FINISHED"}

@@ -149,6 +149,14 @@ kerf_score_options score_options(Arguments& a) {
   if (a.random().below(4) == 0) o.grain = a.number();
   if (a.random().below(4) == 0) o.depth = a.number();
   if (a.random().below(4) == 0) o.frequency = a.one_of({1.0, 4.0, std::nan(""), 0.0, 1e300});
+  if (a.random().below(3) == 0) o.chips = a.one_of({1, 3, -1, INT32_MAX});
+  if (a.random().below(4) == 0) o.chip_size = a.one_of({0.2, 0.0, -1.0, std::nan("")});
+  if (a.random().below(4) == 0) o.edge_detail = a.one_of({0.01, -1.0, std::nan(""), 1e9});
+  if (a.random().below(4) == 0) o.edge_width = a.one_of({0.05, 0.0, std::nan("")});
+  if (a.random().below(4) == 0) {
+    o.density = a.numbers(8);
+    o.density_length = a.one_of<std::size_t>({8, 0, 7});
+  }
   o.has_axis = a.one_of({0, 1, 2});
   o.has_impact = a.one_of({0, 1, -7});
   for (double& x : o.axis) x = a.number();

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "io/images.h"
 #include "io/samples.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
@@ -344,7 +345,7 @@ TEST_CASE("materials, images and both texture coordinates go from one .glb to th
 
 TEST_CASE("all that a material names comes with it: textures, samplers, images, extensions", "[gltf]") {
   Builder b;
-  const std::string png = "\x89PNG\r\n\x1a\n first", jpeg = "\xff\xd8 second", webp = "RIFF____WEBP third";
+  const std::string png = whole_png(2, "first"), jpeg = whole_jpeg(" second "), webp = "RIFF____WEBP third";
   b.primitive()["material"] = 1;
   b.primitive()["attributes"]["TEXCOORD_0"] = b.add<float>({0, 0, 1, 0, 0, 1, 1, 1}, 5126, "VEC2", 4);
   b.primitive()["attributes"]["TEXCOORD_1"] = b.add<float>({0, 0, 1, 0, 0, 1, 1, 1}, 5126, "VEC2", 4);
@@ -435,12 +436,42 @@ TEST_CASE("many nodes that share a mesh are read once, and their number is bound
   CHECK_THAT(refusal(doubled.bytes()), Catch::Contains("more than a million nodes"));
 }
 
+TEST_CASE("an image that is damaged, or not there, is left out with the textures that use it", "[gltf]") {
+  const std::string whole = whole_png(2, "first");
+  const auto read = [&](const std::string& bytes) {
+    Builder b;
+    b.primitive()["material"] = 0;
+    b.primitive()["attributes"]["TEXCOORD_0"] = b.add<float>({0, 0, 1, 0, 0, 1, 1, 1}, 5126, "VEC2", 4);
+    b.add(std::vector<char>(bytes.begin(), bytes.end()), 5121, "SCALAR", bytes.size());
+    b.json["images"] = {{{"bufferView", b.json["bufferViews"].size() - 1}, {"name", "brick"}}, {{"uri", "gone.png"}}};
+    b.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    b.json["materials"] = {{{"name", "Wall"},
+                            {"normalTexture", {{"index", 1}}},
+                            {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0.5}}}}};
+    return b.read();
+  };
+  CHECK(joined(read(whole).notes) == "left out: image gone.png, which is not in its folder\n");
+  for (const auto& [bytes, fault] : std::vector<std::pair<std::string, std::string>>{
+           {whole.substr(0, 40), "is cut off"}, {"a text", "is no PNG or JPEG"}}) {
+    const SurfaceFile file = read(bytes);
+    CHECK(joined(file.notes) ==
+          "left out: image brick, which " + fault + ", image gone.png, which is not in its folder\n");
+    REQUIRE(file.mesh.attributes.library.glb);
+    const Json json = json_of(*file.mesh.attributes.library.glb);
+    CHECK(json["materials"][0] == Json{{"name", "Wall"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.5}}}});
+    CHECK_FALSE(json.contains("images"));
+  }
+}
+
 TEST_CASE("a texture that no texture coordinates place is left out with a word", "[gltf]") {
   Builder b;
   b.primitive()["material"] = 0;
   b.json["materials"] = {{{"name", "Wood"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
   b.json["textures"] = {{{"source", 0}}};
-  b.json["images"] = {{{"uri", "data:image/png;base64,iVBORw0KGgo="}}};
+  b.json["images"] = {
+      {{"uri",
+        "data:image/"
+        "png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCBd81ytgAAAABJRU5ErkJggg=="}}};
   CHECK_THAT(joined(b.read().notes), Catch::Contains("1 texture without texture coordinates"));
   b.primitive()["attributes"]["TEXCOORD_0"] = b.add<float>({0, 0, 1, 0, 0, 1, 1, 1}, 5126, "VEC2", 4);
   const SurfaceFile file = b.read();

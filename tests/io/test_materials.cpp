@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "io/fuzz.h"
+#include "io/images.h"
 #include "io/preview_material.h"
 #include "kerf/appearance.h"
 #include "kerf/check.h"
@@ -39,13 +40,6 @@ class Folder {
   fs::path path_;
 };
 
-// The beginning of a PNG file of this type of colours: 0 grey, 2 red green blue.
-std::string png(char colors, const std::string& content) {
-  std::string bytes = "\x89PNG\r\n\x1a\n";
-  bytes.resize(25, '\0');
-  return bytes + colors + content;
-}
-
 std::string obj_with(const std::string& statements) {
   return statements +
          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl bark\nf 1/1 3/3 2/2\nf 1/1 2/2 4/3\n"
@@ -74,10 +68,10 @@ const std::string tree_mtl =
     "newmtl unused\nmap_Kd missing.png\n";
 
 void write_tree(const Folder& folder) {
-  folder.write("textures/big bark.png", png(2, "bark"));
-  folder.write("surface.png", png(2, "surface"));
-  folder.write("bumps.png", png(2, "bumps"));
-  folder.write("heights.png", png(0, "heights"));
+  folder.write("textures/big bark.png", whole_png(2, "bark"));
+  folder.write("surface.png", whole_png(2, "surface"));
+  folder.write("bumps.png", whole_png(2, "bumps"));
+  folder.write("heights.png", whole_png(0, "heights"));
   folder.write("tree.mtl", tree_mtl);
   folder.write("tree.obj", obj_with("mtllib tree.mtl\n"));
 }
@@ -141,19 +135,51 @@ TEST_CASE("files that are not there, or not in the folder, are told in a line", 
   CHECK_FALSE(none.mesh.attributes.library.glb);
   CHECK(none.mesh.attributes.group_names == std::vector<std::string>{"bark", "old leaf"});
 
-  folder.write("../outside.png", png(2, "secret"));
+  folder.write("../outside.png", whole_png(2, "secret"));
   folder.write("../outside.mtl", "newmtl bark\nKd 1 0 0\n");
   folder.write("tree.obj", obj_with("mtllib ../outside.mtl\n"));
   CHECK_FALSE(read_surface(folder.at("tree.obj")).mesh.attributes.library.glb);
-  folder.write("tree.mtl", "newmtl bark\nKd 1 0 0\nmap_Kd ../outside.png\n");
+  folder.write("tree.mtl", "newmtl bark\nKd 1 0 0\nmap_Kd ../outside.png\nnewmtl old leaf\n");
   folder.write("tree.obj", obj_with("mtllib tree.mtl\n"));
   const SurfaceFile outside = read_surface(folder.at("tree.obj"));
   CHECK(lines(outside.notes) == "left out: textures not in its folder: ../outside.png\n");
   CHECK(outside.mesh.attributes.library.glb->find("secret") == std::string::npos);
   // A path of another machine is looked for by its last name, in the folder and in textures/.
   folder.write("tree.mtl", "newmtl bark\nmap_Kd C:\\work\\bark.png\n");
-  folder.write("textures/bark.png", png(2, "bark"));
+  folder.write("textures/bark.png", whole_png(2, "bark"));
   CHECK(library_json(read_surface(folder.at("tree.obj")).mesh)["images"].size() == 1);
+}
+
+TEST_CASE("an image that is damaged or empty, and a material without a description, are named", "[materials]") {
+  const Folder folder;
+  const std::string whole = whole_png(2, "bark");
+  folder.write("tree.mtl", "newmtl bark\nmap_Kd bark.png\n");
+  folder.write("tree.obj", obj_with("mtllib tree.mtl\n"));
+  const std::string unknown = "names materials that its .mtl does not describe, and which stay names: old leaf\n";
+  folder.write("bark.png", whole);
+  CHECK(lines(read_surface(folder.at("tree.obj")).notes) == unknown);
+  for (const auto& [bytes, fault] : std::vector<std::pair<std::string, std::string>>{
+           {whole.substr(0, whole.size() - 9), "is cut off"}, {"", "is empty"}, {"text", "is no PNG or JPEG"}}) {
+    folder.write("bark.png", bytes);
+    const SurfaceFile file = read_surface(folder.at("tree.obj"));
+    CHECK(lines(file.notes) == "left out of its materials: image bark.png, which " + fault + "\n" + unknown);
+    CHECK_FALSE(library_json(file.mesh).contains("images"));
+  }
+}
+
+TEST_CASE("texture coordinates that name no place are put at 0 and counted", "[materials]") {
+  const Folder folder;
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0.5 0.25\n";
+  for (const char* wild : {"nan 0", "0 inf", "1e30 0", "0 -2e7"}) {
+    folder.write("wild.obj", corners + "vt " + wild + "\nf 1/1 3/2 2/1\nf 1/1 2/1 4/1\nf 1/1 4/1 3/1\nf 2/1 3/2 4/1\n");
+    const SurfaceFile file = read_surface(folder.at("wild.obj"));
+    CHECK(lines(file.notes) ==
+          "has 2 corners with texture coordinates that are not finite or above 2^24; they are put at 0, 0\n");
+    for (const auto& row : file.mesh.attributes.uv)
+      for (const Vec2& uv : row) CHECK((uv == Vec2(0.5, 0.25) || uv == Vec2(0, 0)));
+  }
+  folder.write("far.obj", corners + "vt 16777216 0\nf 1/1 3/2 2/1\nf 1/1 2/1 4/1\nf 1/1 4/1 3/1\nf 2/1 3/2 4/1\n");
+  CHECK(read_surface(folder.at("far.obj")).notes.empty());
 }
 
 TEST_CASE("damaged lines of an .mtl have no effect, and images of other formats are told", "[materials]") {
@@ -167,7 +193,7 @@ TEST_CASE("damaged lines of an .mtl have no effect, and images of other formats 
   const Json json = library_json(file.mesh);
   CHECK(json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] == Json({0.8, 0.8, 0.8, 1}));
   CHECK(json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] == Json({0.5, 0.5, 0.5, 1}));
-  CHECK_THAT(lines(file.notes), Catch::Contains("image leaf.tga (save it as PNG or JPEG)"));
+  CHECK_THAT(lines(file.notes), Catch::Contains("image leaf.tga, which is no PNG or JPEG"));
 }
 
 TEST_CASE("materials and images return from an OBJ that was written, and from folders of PLY", "[materials]") {
@@ -178,7 +204,7 @@ TEST_CASE("materials and images return from an OBJ that was written, and from fo
   CHECK(save_obj(folder.at("out/cut.obj"), mesh).empty());
   CHECK(names_in(folder.at("out")) ==
         std::set<std::string>{"cut.mtl", "cut.obj", "cut_big_bark.png", "cut_bumps.png", "cut_surface.png"});
-  CHECK(read_all(folder.at("out/cut_surface.png")) == png(2, "surface"));
+  CHECK(read_all(folder.at("out/cut_surface.png")) == whole_png(2, "surface"));
   const SurfaceFile again = read_surface(folder.at("out/cut.obj"));
   CHECK(again.notes.empty());
   CHECK(library_json(again.mesh)["materials"] == library_json(mesh)["materials"]);
@@ -299,7 +325,7 @@ TEST_CASE("base colours are factors, images and their places", "[materials]") {
   CHECK(bark.factor == Color(0.25, 0.5, 0.75, 0.5));
   REQUIRE(colors.images.size() == 1);
   CHECK(bark.image == 0);
-  CHECK(colors.images[0] == png(2, "bark"));
+  CHECK(colors.images[0] == whole_png(2, "bark"));
   CHECK(bark.uv_set == 0);
   CHECK(bark.wrap == std::array<TextureWrap, 2>{TextureWrap::clamp, TextureWrap::clamp});
   // As the .mtl says it: a coordinate is multiplied, then moved.

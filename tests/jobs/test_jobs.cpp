@@ -85,6 +85,28 @@ TEST_CASE("cut() takes a sheet or a front, and cuts what is cut again") {
   CHECK(cut(complex.two_sided(), plane_front(-0.4)).chunks.size() == 3);
 }
 
+TEST_CASE("a sheet may be stopped at any report, and the complex is as it was") {
+  Complex complex = Complex::from_skin(make_sphere(8));
+  ScoreOptions options;
+  options.pieces = 6;
+  options.jagged.amplitude = 0.02;
+  const TriangleMesh sheet = make_score(complex, options).sheet;
+  const TriangleMesh before = complex.two_sided();
+  Complex whole = complex;
+  std::size_t reports = 0;
+  const CrackDelta wanted = insert_sheet(whole, sheet, 1, {}, nullptr, [&](auto&&...) { return ++reports > 0; });
+  REQUIRE(reports > 20);
+  for (std::size_t last = 1; last <= reports; last += 1 + reports / 20) {
+    std::size_t now = 0;
+    const auto stop = [&](std::string_view, std::size_t, std::size_t) { return ++now < last; };
+    CHECK_THROWS_AS(insert_sheet(complex, sheet, 1, {}, nullptr, stop), Interrupted);
+    const TriangleMesh after = complex.two_sided();
+    CHECK((after.vertices == before.vertices && after.triangles == before.triangles));
+  }
+  CHECK(insert_sheet(complex, sheet, 1).new_crack_faces == wanted.new_crack_faces);
+  CHECK(complex.two_sided().vertices == whole.two_sided().vertices);
+}
+
 TEST_CASE("jobs refuse models and fronts that they cannot use") {
   TriangleMesh open = make_sphere(4);
   open.triangles.pop_back();
@@ -98,6 +120,7 @@ TEST_CASE("jobs refuse models and fronts that they cannot use") {
   const Progress stop = [](std::string_view, std::size_t, std::size_t) { return false; };
   CHECK_THROWS_AS(fracture(model, {}, stop), Interrupted);
   CHECK_THROWS_AS(cut(model, plane_front(0), {}, stop), Interrupted);
+  CHECK_THROWS_AS(cut(model, make_block({3, 3, 0.1}, 1), {}, stop), Interrupted);
 }
 
 TEST_CASE("save() writes a .glb or a .usda, and refuses other endings") {

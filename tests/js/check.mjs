@@ -9,6 +9,23 @@ const sum = (list) => list.reduce((total, x) => total + x, 0);
 const free = (list) => list.forEach((object) => object.delete());
 
 const tests = {
+  "cells are many where the density is high, and chips are pieces beside them"() {
+    const cube = k.shapes.block([1, 1, 1], { edge: 0.1 });
+    const [high, low] = [[1, 0.05], [0.05, 1]].map(([above, below]) => {
+      const density = Array.from({ length: cube.vertices.length / 3 }, (_, v) => (cube.vertices[3 * v + 2] > 0.5 ? above : below));
+      const pieces = cube.fracture(24, { density, seed: 3 });
+      const count = pieces.filter((piece) => piece.vertices.some((x, i) => i % 3 === 2 && x > 0.6)).length;
+      free(pieces);
+      return count;
+    });
+    assert.ok(high > 0.8 * 24 && low < 0.7 * 24, `${high} and ${low} of 24 reach above the middle`);
+    const walls = k.score(cube, { pieces: 5, chips: 6, chipSize: 0.2, edgeDetail: 0.004, seed: 3 });
+    assert.equal(walls.chips, 6);
+    const broken = cube.crack(walls), chipped = broken.pieces();
+    assert.equal(chipped.length, walls.pieces + 6);
+    near(sum(chipped.map((piece) => piece.volume)), 1);
+    free([...chipped, broken, walls, cube]);
+  },
   "a cube breaks into closed pieces whose volumes add up"() {
     const cube = k.shapes.block([1, 1, 1]);
     const pieces = cube.fracture(30, { seed: 7, hulls: true });
@@ -85,6 +102,10 @@ const tests = {
     fails(() => cube.fracture(0), "InputError", /pieces/);
     fails(() => cube.fracture(3, { pattern: "vornoi" }), "InputError", /voronoi/);
     fails(() => cube.fracture(3, { seed: -1 }), "InputError", /seed/);
+    fails(() => cube.fracture(3, { chipSize: 0.2 }), "InputError", /chipSize changes nothing without chips/);
+    fails(() => cube.fracture(3, { density: "grey" }), "InputError", /luminance/);
+    fails(() => cube.fracture(3, { density: [1, 2] }), "InputError", /2 values/);
+    fails(() => cube.fracture(3, { pattern: "planes", density: "red" }), "InputError", /voronoi and wood/);
     fails(() => cube.split(k.plane([0, 0, 0], [0, 0, 0])), "InputError", /normal/);
     fails(() => cube.split("z"), "InputError", /Plane/);
     fails(() => k.load(new Uint8Array([1, 2, 3])), "InputError", /./);

@@ -59,6 +59,44 @@ class Jobs(unittest.TestCase):
         self.assertEqual(parts[0].group_names.count("crack"), 1)
         self.assertEqual(kerf.score(piece, pieces=3, seed=1).pieces, 3)
 
+    def test_pieces_are_solids(self):
+        pieces = self.model.crack(kerf.score(self.model, pieces=5, seed=2)).pieces(hulls=True)
+        for piece in pieces:
+            self.assertIsInstance(piece, kerf.Solid)
+            fine = piece.refine(0.2)
+            self.assertIs(type(fine), kerf.Piece)
+            self.assertEqual((fine.index, fine.volume, len(fine.hulls)), (piece.index, piece.volume, 1))
+            self.assertGreater(len(fine.faces), len(piece.faces))
+            self.assertTrue(kerf.Solid(piece).check())
+            self.assertIs(type(pickle.loads(pickle.dumps(piece))), kerf.Piece)
+            self.assertEqual(len(kerf.sample(piece, spacing=0.3)), len(kerf.sample(kerf.Mesh(piece.vertices, piece.faces), spacing=0.3)))
+        self.assertTrue({name for name in dir(kerf.Solid) if not name.startswith("_")} <= set(dir(pieces[0])))
+        # Both sides of a crack that ends inside are at one place: the piece is closed, but no valid model.
+        slit = self.model.crack(kerf.score(self.model, "planes", pieces=2, depth=0.5)).pieces()
+        self.assertEqual(len(slit), 1)
+        self.assertEqual(slit[0].euler_number % 2, 0)
+        for call in (lambda: slit[0].fracture(3), slit[0].complex, lambda: kerf.sample(slit[0], spacing=0.3), lambda: kerf.Body(slit[0], spacing=0.3)):
+            with self.assertRaises(kerf.InputError):
+                call()
+
+    def test_slice(self):
+        plane = kerf.plane((0, 0, 0.1), (0, 0, 2))
+        above, below = self.model.slice(plane), self.model.slice(kerf.plane((0, 0, 0.1), (0, 0, -1)))
+        self.assertEqual((len(above), len(below)), (1, 1))
+        self.assertGreaterEqual(above[0].vertices[:, 2].min(), 0.1 - 1e-9)
+        self.assertAlmostEqual(above[0].volume + below[0].volume, self.model.volume, places=12)
+        quarter = self.model.slice([plane, kerf.plane((0.01, 0, 0), (1, 0.02, 0))])
+        self.assertEqual(len(quarter), 1)
+        self.assertLess(quarter[0].volume, above[0].volume)
+        self.assertEqual(self.model.slice(kerf.plane((0, 0, 9), (0, 0, 1))), [])
+        self.assertAlmostEqual(self.model.slice(kerf.plane((0, 0, -9), (0, 0, 1)))[0].volume, self.model.volume, places=12)
+        legs = kerf.shapes.letter("H", 0.3, 30)  # what is in front may be several pieces
+        middle = legs.bounds.mean(axis=0)
+        self.assertEqual(len(legs.slice(kerf.plane(middle + (0, 0.12, 0), (0, 1, 0)))), 2)
+        for wrong in ("z", [(0, 0, 1)], None):
+            with self.assertRaises(TypeError):
+                self.model.slice(wrong)
+
     def test_transformed(self):
         turn = np.array([[0, -1, 0, 2], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
         mirrored = np.diag([-2, 1, 3, 1.0])

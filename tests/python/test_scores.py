@@ -47,10 +47,13 @@ class Scores(unittest.TestCase):
     def test_wrong_densities(self):
         model, red = painted(0.1, 1.0)
         for error, density in ((kerf.InputError, "grey"), (kerf.InputError, red[1:]), (kerf.InputError, -red),
-                               (kerf.InputError, "green"), (kerf.InputError, lambda p: -1), (ValueError, lambda p: "much"), (TypeError, lambda p: None),
+                               (kerf.InputError, "green"), (kerf.InputError, lambda p: -1), 
                                (ZeroDivisionError, lambda p: 1 / 0)):
             with self.assertRaises(error):
                 kerf.score(model, pieces=5, density=density)
+        for value in ("much", None, (1, 2), np.array([1.0, 2.0]), {}):
+            with self.assertRaisesRegex(kerf.InputError, r"density: the callable returned .*; let it return one number, at least 0"):
+                kerf.score(model, pieces=5, density=lambda p: value)
         with self.assertRaisesRegex(kerf.InputError, "voronoi and wood"):
             kerf.score(model, "planes", density="red")
         with self.assertRaisesRegex(kerf.InputError, "no colours"):
@@ -86,6 +89,13 @@ class Scores(unittest.TestCase):
         self.assertEqual(len(model.fracture(5, chips=8, chip_size=0.2, seed=3)), 13)
         plain, detailed = (kerf.score(model, pieces=5, edge_detail=height) for height in (0, 0.004))
         self.assertGreater(len(detailed.sheet.faces), 3 * len(plain.sheet.faces))
+        self.assertEqual(kerf.score(model, pieces=5, chips=0, chip_size=0.3, edge_detail=0, edge_width=0.1).chips, 0)
+        for option, companion in (("chip_size", "chips"), ("edge_width", "edge_detail"), ("up", "image"), ("fit", "image"), ("tolerance", "image")):
+            with self.assertRaisesRegex(kerf.InputError, f"{option} changes nothing without {companion}; give both"):
+                kerf.score(model, pieces=5, **{option: 0.1})
+        for option in ({"image": disc(40, 10)}, {"curves": np.array([[0.5, -9, 0.5], [0.5, 9, 0.5]])}):
+            with self.assertRaisesRegex(kerf.InputError, "go with pattern='curves'; give that"):
+                kerf.score(model, **option)
         for options in ({"chips": -1}, {"chips": 3, "chip_size": 0}, {"chips": 3, "depth": 0.5}, {"edge_detail": 2}, {"edge_width": 0}):
             with self.assertRaises(kerf.InputError):
                 kerf.score(model, pieces=5, **options)

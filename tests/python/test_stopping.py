@@ -23,6 +23,8 @@ class Stopping(unittest.TestCase):
     def setUpClass(cls):
         cls.cut = cut_model()
         cls.fine = kerf.shapes.pumpkin(160)
+        cls.model = kerf.shapes.pumpkin(72)  # of 1e5 triangles
+        cls.wall = kerf.score(cls.model, pieces=30, jagged=0.01, frequency=12, seed=5)
         ball = kerf.shapes.sphere(90)
         cls.twice = kerf.Mesh(np.r_[ball.vertices, ball.vertices + 0.3], np.r_[ball.faces, ball.faces.astype(np.int64) + len(ball.vertices)])
         cls.dented = kerf.Mesh(*(lambda m: (m.vertices * (1 + 0.2 * np.sin(9 * m.vertices[:, :1])), m.faces))(kerf.shapes.sphere(100)))
@@ -35,6 +37,11 @@ class Stopping(unittest.TestCase):
             "convex_decomposition": lambda **p: self.dented.convex_decomposition(60, **p),
             "wrap": lambda **p: self.fine.wrap(0.0012 * np.linalg.norm(np.ptp(self.fine.bounds, axis=0)), **p),
             "united": lambda **p: kerf.Solid.repaired(self.twice, **p),
+            "picture": lambda **p: kerf.picture(self.model, size=(1500, 1500), samples=8, **p),
+            "density": lambda **p: kerf.score(self.model, pieces=400, density=lambda point: float(np.sin(point).sum()) + 3, **p),
+            "fracture": lambda **p: self.model.fracture(50, jagged=0.01, frequency=20, **p),
+            "chips": lambda **p: kerf.score(self.model, pieces=20, chips=200, edge_detail=0.002, **p),
+            "crack": lambda **p: self.model.crack(self.wall, **p),
             "repaired": lambda **p: kerf.Solid.repaired(self.fine, voxel=0.0012 * np.linalg.norm(np.ptp(self.fine.bounds, axis=0)), **p),
         }
 

@@ -10,6 +10,7 @@
 #include "kerf/pieces.h"
 #include "kerf/score.h"
 #include "score/jagged.h"
+#include "score/sound_pieces.h"
 
 using namespace geo;
 
@@ -42,23 +43,9 @@ void check_chips(const TriangleMesh& model, const ScoreOptions& options, std::ui
   CHECK(find_pieces(made).volume == pieces.volume);
   const double had = signed_volume(model);
   const double length = options.chips.size * std::cbrt(had / score.pieces);
-  double sum = 0;
-  for (const double v : pieces.volume) sum += v;
-  CHECK(std::abs(sum - had) <= 1e-12 * had);
   // The chips are the smallest: the pieces have all of the rest.
   if (score.chips > 0) CHECK(pieces.volume.back() >= options.chips.least * 0.1 * std::pow(length / 2, 3));
-  for (std::uint32_t p = 0; p < pieces.count; ++p) {
-    TriangleMesh mesh = piece_mesh(cut, pieces, p);
-    mesh.patch.clear();
-    mesh.site.clear();  // as a mesh of its own
-    const auto whole = check_surface(mesh, SelfIntersections::find);
-    INFO("piece " << p << " " << whole.first_problem);
-    CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&
-           whole.self_intersections == 0));
-  }
-  for (std::uint32_t f = 0; f < cut.face_count(); ++f)
-    if (cut.alive(FaceId(f)) && cut.face(FaceId(f)).crack == 1)
-      REQUIRE(pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]);
+  check_sound_pieces(cut, pieces, had, 0);
 }
 
 }  // namespace

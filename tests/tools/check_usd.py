@@ -68,12 +68,16 @@ frames = int(re.search(r"endTimeCode = (\d+)", text)[1]) + 1
 names = sorted(os.listdir(os.path.join(run, "frames")))
 assert frames == len(names) > 1
 kind, body = found["/run/body"]
-assert kind == "Mesh" and found["/run/body/skin"][0] == found["/run/body/crack"][0] == "GeomSubset"
+subsets = [prim for prim, (kind_, _) in found.items() if kind_ == "GeomSubset"]
+assert kind == "Mesh" and "/run/body/crack" in subsets and len(subsets) > 1
 for prim, (_, lines) in found.items():
     for target in re.findall(r"rel material:binding = <(.*)>", "\n".join(lines)):
         assert found[target][0] == "Material", (prim, target)
 points, counts, corners, patch = (samples(body, name, frames) for name in ("points", "faceVertexCounts", "faceVertexIndices", "primvars:patch"))
-skin, crack = (samples(found["/run/body/" + name][1], "indices", frames) for name in ("skin", "crack"))
+crack = samples(found["/run/body/crack"][1], "indices", frames)
+# The skin is one subset, or one for each material of the model; together they have each of its triangles once.
+parts = [samples(found[prim][1], "indices", frames) for prim in subsets if prim != "/run/body/crack"]
+skin = [numpy.sort(numpy.concatenate([part[i] for part in parts])) for i in range(frames)]
 textured = any("primvars:st.timeSamples" in line for line in body)
 texture = samples(body, "primvars:st", frames) if textured else None
 compared = 0

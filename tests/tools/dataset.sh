@@ -97,6 +97,23 @@ assert all(len(archive[name]) == name.startswith(("fracture_", "piece_vertices",
 assert not any(path.read_text() for path in pathlib.Path("refused/data_split").iterdir())
 END
 
+# Chips and detail at edges: drawn for each fracture, in the record's command, which makes the same pieces.
+kerf-dataset -q block.ply --seeds 3 --pieces 4:6 --chips 2:5 --chip-size 0.2 --edge-detail 0:0.004 --edge-width 0.05 -o chipped || fail "--chips"
+python "$here/check_dataset.py" chipped "$volumes" || fail "chips and detail"
+python - <<'END' || fail "a command with chips makes another fracture"
+import json, pathlib, re, subprocess, numpy as np
+record = next(pathlib.Path("chipped").glob("train/*.json"))
+entries, z = json.loads(record.read_text())["fractures"], np.load(record.with_suffix(".npz"))
+chips = [int(re.search("--chips ([0-9]+) --chip-size 0.2 ", entry["command"])[1]) for entry in entries]
+assert all(2 <= n <= 5 and entry["pieces"] == entry["wanted"] + n for n, entry in zip(chips, entries)), chips
+subprocess.run(entries[2]["command"].replace("-o broken.ply", "-o ../broken.ply"), shell=True, check=True, cwd="chipped")
+subprocess.run("kerf-pieces broken.ply -o chips", shell=True, check=True)
+made = [p["volume"] for p in json.load(open("chips/pieces.json"))["pieces"]]
+assert np.allclose(made, z["piece_volume"][z["fracture_pieces"][2]:], rtol=1e-12), made
+settings = json.load(open("chipped/dataset.json"))
+assert settings["chips"] == [2, 5] and "chips" not in json.load(open("whole/dataset.json"))
+END
+
 # No set with a share is empty as long as there are models; one that is empty is told.
 for name in a b c d; do cp apple.ply $name.ply; done
 for models in "a.ply b.ply c.ply" "b.ply c.ply d.ply" "d.ply c.ply a.ply b.ply"; do
@@ -126,14 +143,14 @@ kerf-dataset apple.ply block.ply --patterns voronoi,bricks --seeds 2 --pieces 4 
 kerf-info -q apple.ply && head -c 2000 apple.ply >torn.ply && printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >open.off
 printf '# three\nbad/torn\ttorn.ply\nopen.off\r\n\nfruit/apple\tapple.ply\n' >list.txt
 kerf-dataset list.txt --seeds 2 --pieces 3 --json -o mixed >figures.json 2>said.txt || fail "a list with models that cannot be used: $(cat said.txt)"
-grep -q '4 fractures failed, 2 models refused' said.txt || fail "of refused models: $(cat said.txt)"
+grep -q '4 fractures failed, 2 models refused, which --repair may mend; reasons' said.txt || fail "of refused models: $(cat said.txt)"
 grep -qP '^open\tvoronoi\t1..2\tthe surface is open' mixed/failed.txt && grep -qP '^bad/torn\tvoronoi\t1..2\t' mixed/failed.txt || fail "failed.txt: $(cat mixed/failed.txt)"
 python "$here/check_dataset.py" mixed "{\"fruit/apple\": $(kerf-info --json apple.ply | grep -o '"volume":[-0-9.e]*' | cut -d: -f2)}" || fail "the mixed data set"
 expect 1 "no fracture could be made" kerf-dataset -q open.off --seeds 2 -o none
 kerf-dataset -q list.txt --seeds 2 --pieces 3 -o mixed 2>said.txt || fail "a complete data set: $(cat said.txt)"
 
 # Refusals before any work; nothing is left.
-for options in "--pieces 1" "--pieces 9:3" "--pieces 2.5" "--pieces x" "--jagged 1" "--jagged nan" "--jagged 0:0.1:2" "--seeds 0" "--patterns red" "--patterns voronoi,voronoi" "--patterns curves" "--split 80,10,11" "--split 1" "--shard 0/2" "--shard 3/2" "--shard -1/2" "--per-shard 0" "--attempts 0" "--bumps 0"; do
+for options in "--pieces 1" "--pieces 9:3" "--pieces 2.5" "--pieces x" "--jagged 1" "--jagged nan" "--jagged 0:0.1:2" "--seeds 0" "--patterns red" "--patterns voronoi,voronoi" "--patterns curves" "--split 80,10,11" "--split 1" "--shard 0/2" "--shard 3/2" "--shard -1/2" "--per-shard 0" "--attempts 0" "--bumps 0" "--chips -1" "--chips 1:2.5" "--edge-detail 1" "--chip-size 0.2" "--edge-width 0.1" "--chip-size 0 --chips 3"; do
   expect 2 "${options%% *}" kerf-dataset apple.ply $options -o x
 done
 expect 2 "give a folder" kerf-dataset apple.ply

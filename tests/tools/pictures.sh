@@ -111,15 +111,18 @@ cmp -s patch.png plain.png || fail "--color patch shows materials"
 awk '/^v/ { print $0, 0, 0, ($2 > 0 ? 1 : 0.5); next } { print }' cube1.obj >colored.obj
 draw colored.obj --camera 0,0 --no-ground -o seen.png
 [ "$(told seen.png)" = b ] || fail "colours of vertices are not drawn"
-refuses 65 "a texture cannot be read: .*; save the image again as PNG or JPEG" kerf-view broken.obj -o x.png
-draw broken.obj --color patch -o seen.png
-# Images that are neither PNG nor JPEG are told in a line, by pictures and pages.
+# A damaged image is left out and named, by every tool.
+kerf-view broken.obj --size 96x72 --samples 1 -o seen.png 2>said.txt || fail "broken.obj is not drawn"
+[ "$(cat said.txt)" = "kerf-view: broken.obj: left out of its materials: image broken.png, which is cut off" ] || fail "broken.obj: $(cat said.txt)"
+kerf-pieces broken.obj -o broken.glb 2>said.txt || fail "broken.obj has no pieces"
+grep -q 'image broken.png, which is cut off' said.txt && ! grep -aq '"images"' broken.glb || fail "a damaged image is in broken.glb: $(cat said.txt)"
+# Images of formats that are not drawn are told in a line, by pictures and pages.
 python3 "$(dirname "$(realpath "$0")")/../assets/painted.py"
 python3 -c 'd = bytearray(open("painted.glb", "rb").read()); i = d.index(b"\x89PNG"); d[i:i + 12] = b"RIFF____WEBP"; open("webp.glb", "wb").write(d)'
 for name in seen.png seen.html; do
   kerf-view painted.glb --size 96x72 --samples 1 -o $name 2>said.txt && [ ! -s said.txt ] || fail "painted.glb: $(cat said.txt)"
   kerf-view webp.glb --size 96x72 --samples 1 -o $name 2>said.txt || fail "webp.glb is not drawn"
-  [ "$(cat said.txt)" = "kerf-view: left out: images of materials in other formats than PNG and JPEG" ] || fail "webp.glb: $(cat said.txt)"
+  [ "$(cat said.txt)" = "kerf-view: left out: images of materials that are no PNG or JPEG, or that cannot be decoded" ] || fail "webp.glb: $(cat said.txt)"
 done
 
 # Animations: as many frames as asked for, the same bytes again.

@@ -7,8 +7,10 @@ Messages are found in the sources: a new one without a case here fails the test,
 Python module run where PYTHON_DIR holds it.
 """
 import json
+import math
 import os
 import pathlib
+import random
 import re
 import socket
 import subprocess
@@ -160,6 +162,18 @@ def scan_of_few_points():
     run(f"kerf-repair few.xyz {option} -o solid.ply && kerf-info --check solid.ply")
 
 
+@case(": has points without faces; make a solid of it: kerf-repair ")
+def scan_for_a_surface():
+    rng, points = random.Random(3), []
+    for _ in range(3000):
+        p = [rng.gauss(0, 1) for _ in range(3)]
+        length = math.hypot(*p)
+        points.append(" ".join(f"{x / length:.6f}" for x in p + p))
+    pathlib.Path("ball.xyz").write_text("\n".join(points) + "\n")
+    run(said("kerf-score ball.xyz --pieces 3 -o x.front", r"make a solid of it: (kerf-repair ball.xyz -o solid.ply), in Python")[1])
+    run("kerf-score solid.ply --pieces 3 -o x.front")
+
+
 @case("; wrap it in a new surface: --voxel 0.005")
 def wrap():
     pathlib.Path("sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
@@ -252,12 +266,15 @@ def densities_and_chips():
     assert not run(f"{wanted} {match[1]} 0.03")[1]
 
 
-@case("' is a sheet, not a curve; give it with --sheets", "; another --seed or more --attempts may find them")
+@case("' is a sheet, not a curve; give it with --sheets", "; another --seed or more --attempts may find them", " goes with --pattern curves; add it")
 def scores():
     run("kerf-model block --edge 0.25 -o block.ply && kerf-score block.ply --pieces 3 -o walls.front")
     said("kerf-score block.ply --pattern curves --curves walls.front -o x.front", r"is a sheet, not a curve; give it with --sheets")
     pathlib.Path("sheet.obj").write_text("v -1 -1 0.3\nv 2 -1 0.3\nv 2 2 0.3\nv -1 2 0.3\nf 1 2 3 4\n")
     run("kerf-score block.ply --pattern sheets --sheets sheet.obj -o x.front")
+    pathlib.Path("line.obj").write_text("v 0.4 -1 0\nv 0.4 2 0\nl 1 2\n")
+    wanted = "kerf-score block.ply --curves line.obj -o x.front"
+    run(f"{wanted} {said(wanted, r'--curves goes with (--pattern curves); add it')[1]}")
     wanted = "kerf-score block.ply --pattern glass --pieces 11 -o x.front"
     match = said(f"{wanted} --attempts 1", r"another (--seed) or more (--attempts) may find them", 0)
     answers = [run(f"{wanted} {match[2]} 60")[1], *(run(f"{wanted} {match[1]} {seed}")[1] for seed in range(2, 8))]
@@ -340,6 +357,13 @@ def touching_bodies():
 
 
 # ---- Data sets
+
+
+@case(", which --repair may mend")
+def refused_models():
+    box("open.obj", ((0, 0, 0), 1), faces=slice(0, 5))
+    wanted = "kerf-dataset open.obj --seeds 1 --pieces 2 --split 100,0,0"
+    run(f"{wanted} {said(f'{wanted} -o refused', r'1 model refused, which (--repair) may mend')[1]} -o mended")
 
 
 @case("give more, or another --split")

@@ -325,8 +325,25 @@ END
   kerf-view -q prop -o prop.html && grep -q 'data:image/png' prop.html || fail "the page of a run has no image"
   kerf-view -q prop --color patch -o bare.html && grep -q 'data:image/png' bare.html && fail "--color patch keeps images"
   kerf-pieces -q prop -o frame.glb && grep -aq '"images"' frame.glb || fail "pieces of a frame have no image"
-  printf '[[body]]\nmesh = "%s"\nspacing = 0.3\n[[body]]\nmesh = "%s"\nspacing = 0.3\nposition = [5, 0, 0]\n[time]\nframes = 1\n' "$(realpath "$cases/gltf/prop.glb")" "$(realpath "$cases/gltf/prop.glb")" >two.toml
-  kerf-sim two.toml -o two 2>&1 | grep -q 'prop.glb: left out: materials but their names' || fail "kerf-sim says nothing of materials"
+  # USD has them, too: a subset and a preview surface each, and the image beside it.
+  grep -q 'def Material "Oak"' prop/run.usda && grep -q 'asset inputs:file = @./run_' prop/run.usda || fail "run.usda has no materials"
+  grep -o '@./run_[^@]*@' prop/run.usda | tr -d @ | while read -r image; do [ -s "prop/$image" ] || fail "run.usda names $image, which is not there"; done
+  # Two bodies: those of the same file share materials, another "Oak" has a number.
+  printf 'newmtl Oak\nKd 0 1 0\n' >green.mtl
+  printf 'mtllib green.mtl\nv 9 0 0\nv 10 0 0\nv 9 1 0\nv 9 0 1\nusemtl Oak\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n' >green.obj
+  printf '[[body]]\nmesh = "%s"\nspacing = 0.3\n[[body]]\nmesh = "%s"\nspacing = 0.3\nposition = [5, 0, 0]\n[[body]]\nmesh = "green.obj"\nspacing = 0.3\n[time]\nframes = 1\n' "$(realpath "$cases/gltf/prop.glb")" "$(realpath "$cases/gltf/prop.glb")" >three.toml
+  kerf-sim three.toml -o three >said.txt 2>&1 || fail "three bodies: $(cat said.txt)"
+  grep -q 'left out' said.txt && fail "kerf-sim leaves materials of three bodies out: $(cat said.txt)"
+  kerf-pieces -q three -o three.glb
+  /usr/bin/python3 - three.glb <<'END' || fail "materials of three bodies"
+import json, struct, sys
+data = open(sys.argv[1], "rb").read()
+json_ = json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])
+colors = {m["name"]: m["pbrMetallicRoughness"].get("baseColorFactor") for m in json_["materials"]}
+assert set(colors) >= {"Oak", "Oak 2"} and colors["Oak 2"] == [0, 1, 0, 1] and colors["Oak"] != colors["Oak 2"], colors
+assert len(json_["images"]) == 1, json_["images"]
+END
+  grep -q 'def Material "Oak_2"' three/run.usda || fail "run.usda of three bodies has no Oak_2"
   # Units: a part of 40 mm weighs what it weighs.
   mass() { /usr/bin/python3 -c 'import json, sys; d = open(sys.argv[1], "rb").read(); n = int.from_bytes(d[12:16], "little"); print(*sorted("%.4g" % m["extensions"]["OMI_physics_body"]["motion"]["mass"] for m in json.loads(d[20:20 + n])["nodes"] if "motion" in m.get("extensions", {}).get("OMI_physics_body", {})))' "$1"; }
   awk '/^ *vertex/ { print "vertex", 40 * $2, 40 * $3, 40 * $4; next } { print }' "$cases/stl/ascii-lead.stl" >part.stl
@@ -423,6 +440,21 @@ scores)
   [ -e x.front ] && fail "a refused score leaves a file"
   for options in "--pattern zigzag" "--pieces 0" "--attempts 0" "--jagged 1" "--bumps 0" "--depth 0%" "--depth 80" "--axis 0,0,0" "--axis up" "--impact 1,2" "--cluster 0" "--grain 0" "--pattern curves" "--sheets x.obj" "--chips -1" "--chip-size 0" "--edge-detail 1" "--edge-width 0" "--tolerance -1" "--density grey" "--chips 3 --depth 50%" "--image x.png"; do
     expect 2 "${options%% *}" kerf-score block.ply $options -o x.front
+  done
+  for pair in "--chip-size 0.2 --chips" "--edge-width 0.1 --edge-detail" "--up z --image" "--fit inside --image" "--tolerance 1 --image"; do
+    set -- $pair
+    expect 2 "$1 changes nothing without $3; give both" kerf-score block.ply $1 $2 -o x.front
+  done
+  expect 2 "\-\-image goes with --pattern curves; add it" kerf-score block.ply --image disc.png -o x.front
+  expect 2 "\-\-curves goes with --pattern curves; add it" kerf-score block.ply --pattern planes --curves lines.obj -o x.front
+  expect 2 "\-\-pattern curves needs --curves FILE or --image FILE" kerf-score block.ply --pattern curves -o x.front
+  # A scan has no faces: the remedy is named.
+  printf '0 0 0\n1 0 0\n0 1 0\n' >scan.xyz
+  printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n' >scan.ply
+  printf '# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n0 0 0\n' >scan.pcd
+  for scan in scan.xyz scan.ply scan.pcd; do
+    expect 65 "$scan: has points without faces; make a solid of it: kerf-repair $scan -o solid.ply" kerf-score $scan -o x.front
+    expect 65 "$scan: has points without faces" kerf-info $scan
   done
   expect 66 "cannot" kerf-score missing.ply -o x.front
   expect 66 "cannot" kerf-score block.ply --pattern sheets --sheets missing.ply -o x.front

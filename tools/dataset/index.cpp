@@ -22,6 +22,14 @@ std::string text_of(const std::vector<ModelFile>& models, const Settings& s) {
   text["pieces"] = {s.pieces.low, s.pieces.high};
   text["jagged"] = {s.jagged.low, s.jagged.high};
   text["bumps"] = s.bumps;
+  if (s.chips.high > 0) {  // data sets from before these options go on
+    text["chips"] = {s.chips.low, s.chips.high};
+    text["chip_size"] = s.chip_size;
+  }
+  if (s.edge_detail.high > 0) {
+    text["edge_detail"] = {s.edge_detail.low, s.edge_detail.high};
+    text["edge_width"] = s.edge_width;
+  }
   text["attempts"] = s.attempts;
   text["rotate"] = s.rotate;
   text["repair"] = s.repair;

@@ -43,11 +43,28 @@ constexpr std::uint64_t drawing = 1, turning = 2;  // purposes; pieces count up 
 
 Recipe recipe_of(const Settings& s, geo::Pattern pattern, std::uint64_t seed) {
   Generator random(seed, drawing);
-  Recipe r{.pattern = pattern, .seed = seed, .pieces = 0, .attempts = s.attempts, .jagged = 0, .bumps = s.bumps};
-  r.pieces = static_cast<int>(std::floor(random.uniform({s.pieces.low, s.pieces.high + 1})));
+  Recipe r{.pattern = pattern,
+           .seed = seed,
+           .pieces = 0,
+           .attempts = s.attempts,
+           .jagged = 0,
+           .bumps = s.bumps,
+           .chips = 0,
+           .chip_size = s.chip_size,
+           .edge_detail = 0,
+           .edge_width = s.edge_width};
+  const auto whole = [&](const Range& range) {
+    return static_cast<int>(std::floor(random.uniform({range.low, range.high + 1})));
+  };
   // Three digits after the first: the command that is recorded stays short.
-  const double jagged = random.uniform(s.jagged);
-  r.jagged = s.jagged.low == s.jagged.high ? jagged : std::round(jagged * 1e5) / 1e5;
+  const auto fraction = [&](const Range& range) {
+    const double drawn = random.uniform(range);
+    return range.low == range.high ? drawn : std::round(drawn * 1e5) / 1e5;
+  };
+  r.pieces = whole(s.pieces);
+  r.jagged = fraction(s.jagged);
+  r.chips = whole(s.chips);
+  r.edge_detail = fraction(s.edge_detail);
   return r;
 }
 
@@ -58,16 +75,24 @@ geo::ScoreOptions score_options(const Recipe& r) {
   o.attempts = r.attempts;
   o.jagged.amplitude = r.jagged;
   o.jagged.frequency = r.bumps;
+  o.jagged.edge_amplitude = r.edge_detail;
+  o.jagged.edge_width = r.edge_width;
+  o.chips.count = r.chips;
+  o.chips.size = r.chip_size;
   o.pattern.seed = o.jagged.seed = r.seed;
   return o;
 }
 
 std::string command_of(const Recipe& r, const std::string& model) {
   const std::string quoted = quoted_for_shell(model);
+  std::string at_edges;
+  if (r.chips > 0) at_edges += " --chips " + std::to_string(r.chips) + " --chip-size " + tool::number(r.chip_size);
+  if (r.edge_detail > 0)
+    at_edges += " --edge-detail " + tool::number(r.edge_detail) + " --edge-width " + tool::number(r.edge_width);
   return "kerf-score " + quoted + " --pattern " + geo::pattern_names[static_cast<std::size_t>(r.pattern)] +
          " --pieces " + std::to_string(r.pieces) + " --jagged " + tool::number(r.jagged) + " --bumps " +
-         tool::number(r.bumps) + " --attempts " + std::to_string(r.attempts) + " --seed " + std::to_string(r.seed) +
-         " | kerf-crack " + quoted + " --front - -o broken.ply";
+         tool::number(r.bumps) + at_edges + " --attempts " + std::to_string(r.attempts) + " --seed " +
+         std::to_string(r.seed) + " | kerf-crack " + quoted + " --front - -o broken.ply";
 }
 
 std::array<double, 4> random_rotation(std::uint64_t seed, std::uint32_t piece) {

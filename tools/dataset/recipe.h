@@ -19,8 +19,10 @@ struct Settings {
   std::vector<geo::Pattern> patterns;
   std::uint64_t first_seed = 1;
   int seeds = 100;  ///< fractures for each model and pattern
-  Range pieces{20, 20}, jagged{0, 0};
+  Range pieces{20, 20}, jagged{0, 0}, chips{0, 0}, edge_detail{0, 0};
   double bumps = 4;                      ///< see geo::JaggedOptions::frequency
+  double edge_width = 0.03;              ///< see geo::JaggedOptions
+  double chip_size = 0.25;               ///< see geo::ChipOptions
   int attempts = 10;                     ///< see geo::ScoreOptions
   bool rotate = false;                   ///< each piece about its centroid, at random
   bool single = false;                   ///< vertices in single precision
@@ -36,6 +38,8 @@ struct Recipe {
   std::uint64_t seed = 1;
   int pieces = 20, attempts = 60;
   double jagged = 0, bumps = 8;
+  int chips = 0;
+  double chip_size = 0.25, edge_detail = 0, edge_width = 0.03;
 };
 
 /// The recipe of one fracture: numbers of ranges are drawn by a generator that starts from the

@@ -7,6 +7,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#include <utility>
+
+#include <kerf/appearance.h>
 #include <kerf/files.h>
 #include "model.h"
 
@@ -47,31 +50,39 @@ geo::SceneOverrides parse_overrides(const std::vector<std::string>& settings) {
 Setup read_setup(const std::string& path, const geo::SceneOverrides& overrides) {
   Setup setup{.scene = geo::read_scene(path, overrides), .models = {}};
   std::vector<geo::TriangleMesh> meshes;
+  std::vector<geo::MaterialLibrary> libraries;
   std::string hashes = std::to_string(setup.scene.fingerprint);
   for (const geo::SceneBody& body : setup.scene.bodies) {
     const std::string bytes = geo::read_all(body.mesh);
     meshes.push_back(tool::parse_solid(bytes, body.mesh).mesh);
     tool::require_whole(meshes.back(), body.mesh, "a scene begins with whole models");
-    setup.materials = tool::for_scene(meshes.back(), body.mesh, body.scale);
-    if (setup.materials.glb) setup.with_materials.push_back(body.mesh);
+    libraries.push_back(tool::for_scene(meshes.back(), body.mesh, body.scale));
+    if (libraries.back().glb) setup.with_materials.push_back(body.mesh);
     hashes += " " + std::to_string(geo::fingerprint(bytes));
   }
   setup.fingerprint = geo::fingerprint(hashes);
-  if (meshes.size() > 1) setup.materials = {};  // frames carry attributes of a single model only
   try {
     setup.models = geo::place_models(setup.scene, std::move(meshes));
   } catch (const geo::InputError& e) {
     throw geo::InputError(path + ": " + e.what());
   }
+  geo::Attributes& all = setup.models.all.attributes;
+  if (libraries.size() == 1) {
+    setup.materials = libraries[0];
+    return setup;
+  }
+  std::vector<geo::TriangleMesh>& bodies = setup.models.bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].attributes.library = libraries[b];
+  all = geo::joined_attributes(bodies);
+  for (geo::TriangleMesh& body : bodies) body.attributes.library = {};
+  setup.materials = std::exchange(all.library, {});  // each frame would hold its images
   return setup;
 }
 
-void tell_lost_materials(const Setup& setup, bool kept) {
-  if (kept && setup.materials.glb) return;
+void tell_lost_materials(const Setup& setup) {
   for (const std::string& path : setup.with_materials) {
     geo::SurfaceFile about;
-    about.notes.push_back(std::string("left out: materials but their names, which ") +
-                          (kept ? "only runs of one body keep" : "are not shown"));
+    about.notes.push_back("left out: materials but their names, which are not shown");
     tool::say_notes(about, path);
   }
 }

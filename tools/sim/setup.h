@@ -16,7 +16,7 @@ struct Setup {
   geo::PlacedModels models;
   std::uint64_t fingerprint = 0;                 ///< of scene and models
   std::vector<std::string> with_materials = {};  ///< paths of models that bring materials
-  geo::MaterialLibrary materials = {};           ///< of the model, where there is one alone
+  geo::MaterialLibrary materials = {};           ///< of all models, by the names of the groups of models.all
 };
 
 /// Overrides from the command line, as KEY=VALUE. Paths there are relative to the current folder,
@@ -28,8 +28,8 @@ Setup read_setup(const std::string& path, const geo::SceneOverrides& overrides);
 
 /// Says which bodies touched and were moved apart; the line begins with the tool's name.
 void tell_touching_bodies(const Setup& setup, const std::string& name, const tool::Tool& t);
-/// Says of which models the materials are left out. Those of a single model are `kept`.
-void tell_lost_materials(const Setup& setup, bool kept);
+/// Says of which models the materials are not shown.
+void tell_lost_materials(const Setup& setup);
 /// Warns of models that are probably in millimetres.
 void warn_of_large_models(const Setup& setup, const tool::Tool& t);
 /// Warns of models with triangles much larger than the node spacing, as CAD programs write them: a

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <memory>
+
 #include <kerf/export.h>
 #include <kerf/files.h>
 
@@ -10,7 +12,7 @@ namespace sim {
 
 char up_axis(const geo::Vec3& gravity) { return gravity.x() == 0 && gravity.z() == 0 && gravity.y() < 0 ? 'Y' : 'Z'; }
 
-void write_whole_run(const RunFolder& folder, int last, double frame_rate, char up) {
+std::vector<std::string> write_whole_run(const RunFolder& folder, int last, double frame_rate, char up) {
   const bool obstacles = std::filesystem::exists(folder.obstacles(0));
   std::vector<std::vector<std::string>> parts(obstacles ? 2 : 1);
   for (int i = 0; i <= last; ++i) {
@@ -23,9 +25,20 @@ void write_whole_run(const RunFolder& folder, int last, double frame_rate, char 
   const auto frames = [&](std::size_t part) {
     return [&, part](std::size_t i) { return geo::read_surface((folder.path / parts[part][i]).string()).mesh; };
   };
+  geo::MaterialLibrary library;
+  if (std::filesystem::exists(folder.materials()))
+    library.glb = std::make_shared<const std::string>(geo::read_all(folder.materials().string()));
   geo::UsdRun usd{.frames = parts[0].size(), .frame_rate = frame_rate, .up = up, .surface = frames(0), .obstacles = {}};
+  usd.surface = [&, read = frames(0)](std::size_t i) {
+    geo::TriangleMesh mesh = read(i);
+    mesh.attributes.library = library;
+    return mesh;
+  };
   if (obstacles) usd.obstacles = frames(1);
+  const geo::ImageFiles images = geo::image_files(library, "run_");
+  for (const geo::BesideFile& image : images.images) geo::write_beside(folder.path.string(), image);
   geo::write_all((folder.path / "run.usda").string(), [&](std::ostream& out) { geo::write_usda(out, usd); });
+  return images.left_out;
 }
 
 }  // namespace sim

@@ -2,6 +2,7 @@
 #include "view/paint.h"
 
 #include <kerf/appearance.h>
+#include <kerf/error.h>
 
 namespace view {
 namespace {
@@ -19,6 +20,15 @@ Painter painter_of(const geo::Attributes& attributes) {
     result.placed.push_back(color.image != geo::BaseColor::no_image &&
                             !(color.uv_set == 0 ? attributes.uv : attributes.uv2).empty() && color.uv_set < 2);
   return result;
+}
+
+// An image as its file has it and decoded; null where that fails.
+std::shared_ptr<const PaintImage> decoded(const std::string& file) {
+  try {
+    return std::make_shared<const PaintImage>(PaintImage{file, decode_texture(file, "materials of the surface")});
+  } catch (const geo::InputError&) {
+    return nullptr;
+  }
 }
 
 }  // namespace
@@ -39,15 +49,17 @@ Paint paint_of(const geo::TriangleMesh& mesh, PaintImages& known) {
   const Painter painter = painter_of(a);
   paint.complete = painter.colors.complete;
   for (const std::string& file : painter.colors.images) {
-    auto& image = known[file];
-    if (!image)
-      image = std::make_shared<const PaintImage>(PaintImage{file, decode_texture(file, "materials of the surface")});
-    paint.textures.push_back(image);
+    const auto [at, fresh] = known.try_emplace(file);
+    if (fresh) at->second = decoded(file);
+    paint.textures.push_back(at->second);
+    paint.complete = paint.complete && at->second;
   }
   for (std::size_t g = 0; g < painter.placed.size(); ++g) {
     const geo::BaseColor& color = painter.colors.of_group[g];
+    const bool has_place = painter.placed[g];
     paint.materials.push_back(
-        {.texture = painter.placed[g] ? color.image : PaintMaterial::no_texture, .wrap = color.wrap});
+        {.texture = has_place && paint.textures[color.image] ? color.image : PaintMaterial::no_texture,
+         .wrap = color.wrap});
   }
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::size_t group = a.group.empty() ? 0 : static_cast<std::size_t>(a.group[t]);

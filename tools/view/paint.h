@@ -23,11 +23,13 @@ struct PaintImage {
   std::string file;
   Texture pixels;
 };
-/// Images by the bytes of their files: those of other frames are not decoded again.
+/// Images by the bytes of their files: those of other frames are not decoded again. Null: one that
+/// cannot be decoded.
 using PaintImages = std::map<std::string, std::shared_ptr<const PaintImage>>;
 
 /// The line that a picture or page says where Paint::complete is false.
-inline constexpr const char* images_left_out = "left out: images of materials in other formats than PNG and JPEG";
+inline constexpr const char* images_left_out =
+    "left out: images of materials that are no PNG or JPEG, or that cannot be decoded";
 
 /// Colours of triangles, or nothing where arrays are empty.
 struct Paint {
@@ -37,7 +39,7 @@ struct Paint {
   std::vector<std::uint32_t> material;             ///< per triangle; `none`: it is not painted
   std::vector<std::array<Eigen::Vector2f, 3>> at;  ///< per corner: the place in the image
   std::vector<std::array<Color, 3>> tint;          ///< per corner: a factor, linear
-  bool complete = true;                            ///< false: images of other formats than PNG and JPEG are left out
+  bool complete = true;                            ///< false: images_left_out
 
   /// Whether a triangle is painted.
   bool has(std::size_t triangle) const { return triangle < material.size() && material[triangle] != none; }
@@ -52,7 +54,7 @@ struct Paint {
 bool has_paint(const geo::TriangleMesh& mesh);
 
 /// The paint of a surface; empty where has_paint() is false. Images are taken from `known`, and
-/// added to it. Throws geo::InputError for a texture that cannot be read.
+/// added to it.
 Paint paint_of(const geo::TriangleMesh& mesh, PaintImages& known);
 /// The same for a single surface.
 Paint paint_of(const geo::TriangleMesh& mesh);

@@ -71,16 +71,23 @@ class Dice {
 };
 
 // Corner normals, smoothed over faces that meet at less than 40 degrees around the same row.
-std::vector<std::array<Eigen::Vector3f, 3>> smooth_normals(const geo::TriangleMesh& mesh) {
+std::vector<std::array<Eigen::Vector3f, 3>> smooth_normals(const geo::TriangleMesh& mesh,
+                                                           const geo::Progress& progress) {
+  constexpr std::uint32_t few = 1 << 14;  // some ten milliseconds
+  const auto pause_before = [&](std::uint32_t t) {
+    if (t % few == 0) geo::report(progress, "render", 0, 1);
+  };
   std::vector<Vec3> face(mesh.triangles.size());
   std::vector<std::vector<std::uint32_t>> at(mesh.vertices.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    pause_before(t);
     const auto& [a, b, c] = mesh.triangles[t];
     face[t] = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
     for (const auto v : mesh.triangles[t]) at[v].push_back(t);
   }
   std::vector<std::array<Eigen::Vector3f, 3>> normals(mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    pause_before(t);
     const Vec3 own = face[t].normalized();
     for (int k = 0; k < 3; ++k) {
       Vec3 sum = Vec3::Zero();
@@ -109,20 +116,54 @@ void count_crossing(const RTCFilterFunctionNArguments* args) {
   }
 }
 
+// The device and its scenes: the surface, spheres and sticks, the surface for winding numbers.
+struct Embree {
+  Embree() {
+    if (!device) throw geo::OutputError("the ray tracer cannot start");
+    for (RTCScene* scene : {&surface, &things, &counter}) {
+      *scene = rtcNewScene(device);
+      rtcSetSceneFlags(*scene, RTC_SCENE_FLAG_ROBUST);
+    }
+  }
+  ~Embree() {
+    for (RTCScene scene : {surface, things, counter}) rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+  Embree(const Embree&) = delete;
+  Embree& operator=(const Embree&) = delete;
+
+  RTCDevice device = rtcNewDevice("threads=1,set_affinity=0");
+  RTCScene surface = nullptr, things = nullptr, counter = nullptr;
+};
+
+// Builds a scene's tree; throws Interrupted where `progress` stops it.
+void commit(RTCScene scene, const geo::Progress& progress) {
+  struct Monitor {
+    const geo::Progress& progress;
+    bool stopped = false;
+  } monitor{progress};
+  rtcSetSceneProgressMonitorFunction(
+      scene,
+      [](void* to, double) {
+        auto& of = *static_cast<Monitor*>(to);
+        of.stopped = of.stopped || (of.progress && !of.progress("render", 0, 1));
+        return !of.stopped;
+      },
+      &monitor);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  if (monitor.stopped) throw geo::Interrupted();
+}
+
 class Tracer {
  public:
-  explicit Tracer(const Stage& stage) : stage_(stage), normals_(smooth_normals(stage.surface)) {
-    device_ = rtcNewDevice("threads=1,set_affinity=0");
-    if (!device_) throw geo::OutputError("the ray tracer cannot start");
-    surface_ = rtcNewScene(device_);
-    things_ = rtcNewScene(device_);
-    counter_ = rtcNewScene(device_);
-    for (RTCScene scene : {surface_, things_, counter_}) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  Tracer(const Stage& stage, const geo::Progress& progress)
+      : stage_(stage), normals_(smooth_normals(stage.surface, progress)) {
     add_surface(surface_, false);
-    add_surface(counter_, true);
+    if (stage.cutaway) add_surface(counter_, true);
     add_spheres();
     add_sticks();
-    for (RTCScene scene : {surface_, things_, counter_}) rtcCommitScene(scene);
+    for (RTCScene scene : {surface_, things_, counter_}) commit(scene, progress);
     geo::Box3 box;
     for (const auto& t : stage.surface.triangles)
       for (const auto v : t) box.add(stage.surface.vertices[v]);
@@ -130,12 +171,6 @@ class Tracer {
     scale_ = std::max(box.diagonal(), 1e-300);
     floor_ = stage.ground_level.value_or(box.empty() ? 0 : box.lo.z() - 1e-4 * scale_);
   }
-  ~Tracer() {
-    for (RTCScene scene : {surface_, things_, counter_}) rtcReleaseScene(scene);
-    rtcReleaseDevice(device_);
-  }
-  Tracer(const Tracer&) = delete;
-  Tracer& operator=(const Tracer&) = delete;
 
   Color shade(const Vec3& eye, const Vec3& d, Dice& dice) const {
     double from = 0, until = 1e30;
@@ -365,8 +400,9 @@ class Tracer {
 
   const Stage& stage_;
   std::vector<std::array<Eigen::Vector3f, 3>> normals_;
-  RTCDevice device_ = nullptr;
-  RTCScene surface_ = nullptr, things_ = nullptr, counter_ = nullptr;
+  const Embree embree_;
+  const RTCDevice device_ = embree_.device;
+  const RTCScene surface_ = embree_.surface, things_ = embree_.things, counter_ = embree_.counter;
   double scale_ = 1, floor_ = 0;
 };
 
@@ -441,7 +477,7 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
   const double radius = std::max(0.5 * camera.box.diagonal(), 1e-300);
   const Stage near =
       placed(stage, camera.box.empty() ? Vec3(Vec3::Zero()) : camera.box.center(), 1 / radius, camera.y_up);
-  const Tracer tracer(near);
+  const Tracer tracer(near, progress);
   const double azimuth = camera.azimuth * pi / 180, elevation = camera.elevation * pi / 180;
   const Vec3 forward(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
                      -std::sin(elevation));
@@ -479,11 +515,20 @@ Picture render(const Stage& stage, const Camera& camera, const RenderOptions& op
         picture.at(x, static_cast<int>(y)) = scaled(sum, 1.0 / samples);
       }
   };
-  const auto height = static_cast<std::size_t>(options.height), band = std::max<std::size_t>(64, height / 8);
-  for (std::size_t top = 0; top < height; top += band) {
+  const auto height = static_cast<std::size_t>(options.height);
+  // Bands last a fiftieth to a tenth of a second, so that progress may stop them; pixels do not
+  // depend on them.
+  std::size_t band = 4;
+  geo::Stopwatch watch;
+  for (std::size_t top = 0; top < height;) {
     geo::report(progress, "render", top, height);
-    geo::parallel_for(std::min(band, height - top), 4,
-                      [&](std::size_t begin, std::size_t end) { draw_rows(top + begin, top + end); });
+    const std::size_t rows = std::min(band, height - top);
+    watch.lap();
+    geo::parallel_for(rows, 1, [&](std::size_t begin, std::size_t end) { draw_rows(top + begin, top + end); });
+    const double seconds = watch.lap();
+    top += rows;
+    if (seconds < 0.02) band *= 2;
+    if (seconds > 0.1 && band > 1) band /= 2;
   }
   return picture;
 }

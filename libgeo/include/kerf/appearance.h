@@ -1,8 +1,10 @@
-// The base colours and images of a surface's materials, for programs that draw it.
+// The base colours and images of a surface's materials, for programs that draw it; attributes of
+// several surfaces as one.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,5 +41,11 @@ struct BaseColors {
 /// else grey, darker for cracks. Images in other formats than PNG and JPEG are left out. Throws
 /// InputError where the library is damaged.
 BaseColors base_colors(const Attributes& attributes);
+
+/// The attributes of several meshes as one whose triangles follow each other. Where a mesh lacks
+/// some they are filled: places 0, white, normals of triangles, the group "default". Groups of one
+/// name with different materials get a number: "wood", "wood 2". Throws InputError where a library
+/// is damaged.
+Attributes joined_attributes(std::span<const TriangleMesh> meshes);
 
 }  // namespace geo

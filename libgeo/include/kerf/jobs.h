@@ -33,16 +33,25 @@ namespace geo {
 /// \throws Interrupted where `progress` asks for it
 PieceSet fracture(const TriangleMesh& model, const ScoreOptions& options = {}, const Progress& progress = {});
 
+/// As insert_sheet() of kerf/crack.h, where the caller may stop it.
+/// \param progress  is called every few milliseconds
+/// \throws Interrupted where `progress` asks for it; `complex` is then unchanged
+CrackDelta insert_sheet(Complex& complex, const TriangleMesh& sheet, std::int32_t crack, const CrackOptions& options,
+                        CrackStats* stats, const Progress& progress);
+
 /// Cuts a model along a sheet: insert_sheet(), make_chunks(). Parts of the sheet outside the model
 /// have no effect.
 ///
 /// \param model  a valid model (require_solid()), which may be cut already
 /// \param sheet  any triangles, connected or not, crossing each other or not; model units
 /// \param options  tolerances, relative to the diagonal
+/// \param progress  as insert_sheet()
 /// \return as fracture()
 /// \throws InputError where the model is not valid, or the sheet cannot be used
 /// \throws GeometryError where no attempt passes the guard
-PieceSet cut(const TriangleMesh& model, const TriangleMesh& sheet, const CrackOptions& options = {});
+/// \throws Interrupted where `progress` asks for it
+PieceSet cut(const TriangleMesh& model, const TriangleMesh& sheet, const CrackOptions& options = {},
+             const Progress& progress = {});
 
 /// Cuts a model along the way of a front, from its first step to its last: begin_front(),
 /// advance(), make_chunks(). The front of a sheet is that sheet.

@@ -96,15 +96,20 @@ view::Picture draw(const Drawing& drawing, const geo::Progress& progress) {
   view::Subject subject;
   subject.surface = joined(drawing.surfaces);
   subject.obstacles = joined(drawing.obstacles);
+  const auto pause = [&] { geo::report(progress, "render", 0, 1); };
+  pause();
   view::Stage stage = view::stage_of(subject, drawing.look);
+  pause();
   stage.ground = drawing.ground;
   if (drawing.look.coloring == view::Coloring::model) paint_triangles(stage, drawing);
   color_triangles(stage, drawing, subject.surface);
   add_nodes(stage, drawing);
+  pause();
   view::Camera camera = drawing.camera;
   if (const geo::Box3 frame = view::frame_of(stage); !frame.empty()) {
     camera.box = frame;
     view::add_outermost(stage, camera.box, camera.points);
+    pause();
   }
   return view::render(stage, camera, drawing.options, progress);
 }

@@ -1,4 +1,7 @@
 // The extension kerf._scan: surfaces of scans by PCL, loaded with the first call that needs it.
+#include <chrono>
+#include <mutex>
+
 #include "../apart.h"
 #include "../arguments.h"
 #include "../arrays.h"
@@ -35,6 +38,17 @@ geo::PointCloud cloud_from(const py::object& points, const py::object& normals, 
   return cloud;
 }
 
+// Waits until no other fit runs, as one is made at a time. A call that was stopped meanwhile throws
+// Interrupted: the process need not wait for its fit at its end.
+std::unique_lock<std::timed_mutex> turn_of_fit(const geo::Progress& progress) {
+  static std::timed_mutex fitting;
+  std::unique_lock lock(fitting, std::defer_lock);
+  do geo::report(progress, "scan", 0, 1);
+  while (!lock.try_lock_for(std::chrono::milliseconds(20)));
+  geo::report(progress, "scan", 0, 1);
+  return lock;
+}
+
 py::tuple reconstruct(const py::object& points, const py::object& normals, const py::object& colors, double outliers,
                       std::int64_t depth, py::object progress) {
   if (!(outliers >= 0 && outliers <= 1000)) throw geo::InputError("reconstruct: outliers must be from 0 to 1000");
@@ -43,7 +57,8 @@ py::tuple reconstruct(const py::object& points, const py::object& normals, const
   const scan::Options options{outliers, static_cast<int>(depth)};
   ProgressReport report(std::move(progress));
   const auto result = report.run([&](const geo::Progress& progress) {
-    return run_apart(progress, "scan", [cloud, options](const geo::Progress&) {
+    return run_apart(progress, "scan", [cloud, options](const geo::Progress& own) {
+      const std::unique_lock fit = turn_of_fit(own);
       auto made = std::make_shared<scan::Result>();
       std::string message;
       if (!kerf_scan_reconstruct(cloud.get(), &options, made.get(), &message))

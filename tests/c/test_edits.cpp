@@ -26,7 +26,9 @@ double smallest_angle(kerf_complex complex) {
     double u2 = 0, v2 = 0, uv = 0;
     for (int k = 0; k < 3; ++k) {
       const double u = at[1][k] - at[0][k], v = at[2][k] - at[0][k];
-      u2 += u * u, v2 += v * v, uv += u * v;
+      u2 += u * u;
+      v2 += v * v;
+      uv += u * v;
     }
     least = std::min(least, std::acos(uv / std::sqrt(u2 * v2)) * 180 / 3.14159265358979);
   }

@@ -209,6 +209,17 @@ KERF_API kerf_status kerf_complex_crack_bytes(kerf_complex complex, const uint8_
 KERF_API kerf_status kerf_complex_undo(kerf_complex complex);
 /* Heals pieces below a volume (model units^3) to their neighbours. */
 KERF_API kerf_status kerf_complex_join_small_pieces(kerf_complex complex, double least);
+/* Improves faces whose smallest angle is below `angle`, 0 to 30 degrees. This and the next two end
+ * the fronts of the complex, and cannot be undone. A call that is stopped leaves it as it was. */
+KERF_API kerf_status kerf_complex_remesh(kerf_complex complex, double angle, kerf_progress progress, void* user);
+/* Displaces the inner vertices of cracks by noise: `amplitude` as a fraction of the diagonal of the
+ * largest bumps, `frequency` of these a diagonal. Volumes of pieces keep their sum. */
+KERF_API kerf_status kerf_complex_roughen(kerf_complex complex, double amplitude, double frequency, uint64_t seed,
+                                          kerf_progress progress, void* user);
+/* Collapses edges where a surface moves by at most `deviation`, a fraction of the diagonal, until
+ * `faces` are left; 0: as many as possible. */
+KERF_API kerf_status kerf_complex_decimate(kerf_complex complex, double deviation, size_t faces,
+                                           kerf_progress progress, void* user);
 
 /* A front: a polyline that cuts on its way. Its complex lives as long as it does. */
 typedef struct kerf_front_s* kerf_front;

@@ -20,7 +20,10 @@ geo::Complex complex_of(const geo::TriangleMesh& mesh) {
 }
 
 // An edit that no front makes: it ends what undo() knows of fronts.
-void forget_front(ComplexObject& complex) { complex.moved.reset(); }
+void forget_front(ComplexObject& complex) {
+  complex.moved.reset();
+  complex.changed_whole = false;
+}
 
 void insert(ComplexObject& complex, const geo::TriangleMesh& sheet) {
   if (sheet.triangles.empty()) throw geo::InputError("the sheet has no triangles");
@@ -225,6 +228,8 @@ kerf_status kerf_complex_crack_bytes(kerf_complex complex, const uint8_t* bytes,
 kerf_status kerf_complex_undo(kerf_complex complex) {
   return call([&] {
     const Writing<ComplexObject> use(complex);
+    if (use->changed_whole)
+      throw geo::GeometryError("undo: the last edit changed the whole complex; copy it before such an edit");
     use->complex.undo();
     if (const auto front = use->moved.lock()) front->state = use->before;
     forget_front(*use);
@@ -240,6 +245,49 @@ kerf_status kerf_complex_join_small_pieces(kerf_complex complex, double least) {
     ++use->healed;
     forget_front(*use);
     geo::heal(use->complex, pieces, group);
+  });
+}
+
+// An edit of the whole complex, after which its fronts have ended.
+template <class Edit>
+static kerf_status edit_all(kerf_complex complex, const Edit& edit) {
+  return call([&] {
+    const Writing<ComplexObject> use(complex);
+    edit(use->complex);
+    ++use->healed;
+    forget_front(*use);
+    use->changed_whole = true;
+  });
+}
+
+kerf_status kerf_complex_remesh(kerf_complex complex, double angle, kerf_progress progress, void* user) {
+  return edit_all(complex, [&](geo::Complex& k) {
+    geo::RemeshOptions options;
+    options.angle = number_of(angle, 0, 30, "angle");
+    std::vector<geo::FaceId> faces;
+    for (std::uint32_t f = 0; f < k.face_count(); ++f) faces.emplace_back(f);
+    geo::remesh(k, faces, {}, options, nullptr, progress_of(progress, user));
+  });
+}
+
+kerf_status kerf_complex_roughen(kerf_complex complex, double amplitude, double frequency, uint64_t seed,
+                                 kerf_progress progress, void* user) {
+  return edit_all(complex, [&](geo::Complex& k) {
+    geo::RoughenOptions options;
+    options.amplitude = number_of(amplitude, 0, 1, "amplitude");
+    options.frequency = number_of(frequency, 0, 1e4, "frequency");
+    options.seed = seed;
+    geo::roughen(k, {}, options, nullptr, progress_of(progress, user));
+  });
+}
+
+kerf_status kerf_complex_decimate(kerf_complex complex, double deviation, size_t faces, kerf_progress progress,
+                                  void* user) {
+  return edit_all(complex, [&](geo::Complex& k) {
+    geo::DecimateOptions options;
+    options.deviation = number_of(deviation, 0, 1, "deviation");
+    options.faces = faces;
+    geo::decimate(k, {}, options, nullptr, progress_of(progress, user));
   });
 }
 
@@ -261,11 +309,12 @@ kerf_status kerf_front_advance(kerf_front front, const double* points, size_t po
     const Writing<FrontObject> use(front);
     const Writing<ComplexObject> complex(use->complex);
     if (use->healed != complex->healed)
-      throw geo::InputError("the front ended where pieces were joined; begin another one");
+      throw geo::InputError("the front ended where the whole complex was changed; begin another one");
     geo::FrontState before = use->state;
     const geo::CrackDelta delta = geo::advance(complex->complex, use->state, line);
     complex->before = std::move(before);
     complex->moved = use.shared();
+    complex->changed_whole = false;
     if (new_faces) *new_faces = delta.new_crack_faces.size();
   });
 }

@@ -49,7 +49,8 @@ struct ComplexObject : Object {
   geo::CrackNumbers numbers;
   std::weak_ptr<FrontObject> moved;  ///< the front that made the last edit
   geo::FrontState before;            ///< of `moved`, before that edit
-  std::uint64_t healed = 0;          ///< how often faces of cracks were taken away
+  std::uint64_t healed = 0;          ///< how often all of it was changed: fronts have ended
+  bool changed_whole = false;        ///< by the last edit, of many steps: it cannot be taken back
 };
 
 /// A front that cuts a complex. Whoever uses it uses the complex.

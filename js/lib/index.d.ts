@@ -1,4 +1,4 @@
-// Types of Kerf for JavaScript.
+// Types of Kerf for JavaScript, for TypeScript 4.7 and later.
 
 /** Rows of numbers: a typed array, an array of numbers, or an array of rows. */
 export type Rows = ArrayLike<number> | ReadonlyArray<ArrayLike<number>>;
@@ -10,6 +10,12 @@ export class KerfError extends Error {
   name: "InputError" | "GeometryError" | "Interrupted" | "RangeError" | "Error";
 }
 
+// TypeScript knows it from 5.2 on.
+declare global {
+  interface SymbolConstructor {
+    readonly dispose: unique symbol;
+  }
+}
 /** An object with memory of its own, which delete() frees; `using` does, too. */
 interface Owner {
   delete(): void;
@@ -127,6 +133,8 @@ export class Mesh {
   split(what: Crack | ReadonlyArray<Crack>, options?: CrackOptions & PieceOptions): Piece[];
   cut(what: Crack | ReadonlyArray<Crack>, options?: CrackOptions & PieceOptions): Piece[];
   fracture(pieces?: number, options?: FractureOptions): Piece[];
+  /** Breaks it by a blow of an energy, J; a Breakable is faster for a second one. */
+  strike(point: ArrayLike<number>, energy: number, options?: StrikeOptions): Breaking;
   /** Convex parts. */
   decomposition(options?: { parts?: number; corners?: number }): Mesh[];
 }
@@ -205,6 +213,61 @@ export class Complex {
   save(format: "glb" | "usda" | "ply" | "obj" | "stl" | "off", options?: { corners?: number; parts?: number; tile?: number; zUp?: boolean }): Uint8Array;
 }
 
+export interface StrikeOptions {
+  /** Pieces are longer along it. */
+  direction?: ArrayLike<number>;
+  /** Time that the call may take; without it, the break is finished at once. */
+  milliseconds?: number;
+  /** J for a square unit of new wall. */
+  toughness?: number;
+  maxPieces?: number;
+  /** Spacing of pieces over distance from the impact, as a power; 0: even. */
+  grading?: number;
+  /** Length of pieces along the direction over width. */
+  elongation?: number;
+  hullParts?: number;
+  hullCorners?: number;
+  seed?: number;
+  /** Whether no faces may cross by a rounding, either, so that every piece is a Solid: takes twice as long. */
+  guard?: boolean;
+}
+export interface Breakable extends Owner {}
+/** A solid that is prepared to be broken where it is hit. Making it is the slow part of an impact. */
+export class Breakable {
+  constructor(solid: Mesh);
+  /** Freed with this object. */
+  readonly mesh: Mesh;
+  readonly volume: number;
+  strike(point: ArrayLike<number>, energy: number, options?: StrikeOptions): Breaking;
+}
+/** A part of a break; `divided`, `whole` and `hulls` follow it. */
+export class BrokenPart {
+  private constructor();
+  readonly index: number;
+  /** May be hit again. */
+  readonly solid: Breakable;
+  readonly mesh: Mesh;
+  readonly volume: number;
+  readonly centroid: Float64Array;
+  /** Index of the part that it came out of; null: it is the solid. */
+  readonly parent: number | null;
+  readonly divided: boolean;
+  /** It breaks no further in this impact, and has its hulls. */
+  readonly whole: boolean;
+  readonly hulls: ReadonlyArray<Mesh>;
+}
+export interface Breaking extends Owner {}
+/** A break that goes on from call to call: after each, its pieces fill the solid. delete() frees the parts, too. */
+export class Breaking {
+  private constructor();
+  readonly finished: boolean;
+  readonly parts: BrokenPart[];
+  /** The parts that are not divided. */
+  readonly pieces: BrokenPart[];
+  /** Goes on for about this time, for one step at least; returns whether it is finished. */
+  advance(milliseconds: number): boolean;
+}
+
 export interface FrameStats {
   /** Elastic and kinetic energy at the frame's end, J. */
   elastic: number;
@@ -268,6 +331,9 @@ export interface Kerf {
   Score: typeof Score;
   Complex: typeof Complex;
   FrontState: typeof FrontState;
+  Breakable: typeof Breakable;
+  Breaking: typeof Breaking;
+  BrokenPart: typeof BrokenPart;
   KerfError: typeof KerfError;
   plane(point: ArrayLike<number>, normal: ArrayLike<number>): Plane;
   score(model: Mesh | Complex, options?: ScoreOptions): Score;

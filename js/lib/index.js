@@ -145,6 +145,15 @@ export class Mesh extends Owner {
     }
     return piecesOf(complex, options);
   }
+  /** Breaks it by a blow, finer near the point; Breakable is faster for a second one. */
+  strike(point, energy, options = {}) {
+    const prepared = new Breakable(this);
+    try {
+      return prepared.strike(point, energy, options);
+    } finally {
+      prepared.delete();
+    }
+  }
 }
 
 // A handle of the module, for constructors.
@@ -309,6 +318,70 @@ export class Complex extends Owner {
   }
 }
 
+// ---- Impacts
+
+/** A solid that is prepared to be broken where it is hit. Making it is the slow part of an impact. */
+export class Breakable extends Owner {
+  #mesh = null;
+  constructor(solid) {
+    if (!(solid instanceof Made || solid instanceof Mesh)) throw new KerfError("InputError", "solid: give a Solid, or a Mesh that is a valid model");
+    super(solid instanceof Made ? solid.handle : call("makeBreakable", solid.handle));
+  }
+  /** Its mesh, made once: delete() of this object frees it. */
+  get mesh() { return (this.#mesh ??= meshOf(call("breakableMesh", this.handle))); }
+  get volume() { return call("breakableVolume", this.handle); }
+  strike(point, energy, { milliseconds = Infinity, ...options } = {}) {
+    if (options.direction !== undefined) options.direction = rows(options.direction, "direction");
+    const breaking = new Breaking(new Made(call("strike", this.handle, rows(point, "point"), energy, options)));
+    try {
+      breaking.advance(milliseconds);
+    } catch (error) {
+      breaking.delete();
+      throw error;
+    }
+    return breaking;
+  }
+  delete() {
+    this.#mesh?.delete();
+    super.delete();
+  }
+}
+
+/** A part of a break; `divided`, `whole` and `hulls` follow it. */
+export class BrokenPart {
+  constructor(made, index) {
+    this.index = index, this.solid = new Breakable(new Made(made.solid)), this.parent = made.parent < 0 ? null : made.parent;
+    this.volume = made.volume, this.centroid = made.centroid, this.divided = false, this.whole = false, this.hulls = [];
+  }
+  get mesh() { return this.solid.mesh; }
+}
+
+/** A break that goes on from call to call: after each, its pieces fill the solid. */
+export class Breaking extends Owner {
+  #parts = [];
+  constructor({ handle }) { super(handle); }
+  finished = false;
+  /** Goes on for about this time, for one step at least; returns whether it is finished. */
+  advance(milliseconds) {
+    this.finished = call("advanceBreaking", this.handle, milliseconds);
+    call("partStates", this.handle).forEach((state, index) => {
+      const part = (this.#parts[index] ??= new BrokenPart(call("partMade", this.handle, index), index));
+      if (state & 2 && !part.whole) part.hulls = call("partHulls", this.handle, index).map(meshOf);
+      part.divided = (state & 1) !== 0, part.whole = (state & 2) !== 0;
+    });
+    return this.finished;
+  }
+  /** All parts, in the order in which they came out; the first is the solid. */
+  get parts() { return [...this.#parts]; }
+  /** The parts that are not divided. */
+  get pieces() { return this.#parts.filter(({ divided }) => !divided); }
+  /** Frees the parts, their meshes and hulls, too. */
+  delete() {
+    for (const { solid, hulls } of this.#parts) solid.delete(), hulls.forEach((hull) => hull.delete());
+    super.delete();
+  }
+}
+
 // ---- Files and shapes
 
 /** Reads OBJ, PLY, STL, OFF or GLB: a Solid, or a Mesh where it is no valid model. */
@@ -348,7 +421,7 @@ async function simulation(scene, options = {}) {
 }
 
 const api = {
-  Mesh, Solid, Piece, Plane, Front, Score, Complex, FrontState, KerfError, plane, score, load, shapes, simulation,
+  Mesh, Solid, Piece, Plane, Front, Score, Complex, FrontState, Breakable, Breaking, BrokenPart, KerfError, plane, score, load, shapes, simulation,
   patterns: ["planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks"],
   /** Bytes of the module's heap that are in use. */
   usedBytes: () => core.usedBytes(),

@@ -8,6 +8,7 @@
 
 #include <Eigen/LU>
 
+#include "base/cube_root.h"
 #include "base/random.h"
 #include "score/voronoi.h"
 #include "score/walls.h"
@@ -107,7 +108,7 @@ std::vector<Vec3> impact_sites(std::span<const Vec3> among, int count, const Imp
 int site_count(double volume, const Impact& impact, const ImpactOptions& options) {
   constexpr double wall_of_cells = 2.91;  // half of 5.82, the mean surface of a cell of volume 1
   const double area = impact.energy / options.toughness;
-  const double root = area / (wall_of_cells * std::cbrt(volume) * std::cbrt(volume));
+  const double root = area / (wall_of_cells * cube_root(volume) * cube_root(volume));
   return static_cast<int>(std::min(std::round(root * root * root), double(options.max_pieces)));
 }
 

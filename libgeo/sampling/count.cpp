@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "base/cube_root.h"
 #include "base/random.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
@@ -119,7 +120,7 @@ SpacedLeaves LeafFinder::with_count(std::size_t count, double volume, SampleRepo
   CountCurve curve;
   int thin = thin_levels();
   // A large spacing first: it costs little, and it shows how fine thin material may be.
-  double spacing = 2.5 * std::cbrt(volume / target);
+  double spacing = 2.5 * cube_root(volume / target);
   std::optional<SpacedLeaves> found;
   std::size_t nodes = 0;
   const auto look = [&] {

@@ -12,6 +12,7 @@
 #include <optional>
 #include <tuple>
 
+#include "base/cube_root.h"
 #include "base/random.h"
 #include "base/sine.h"
 #include "base/union_find.h"
@@ -357,7 +358,7 @@ std::uint32_t add_chips(TriangleMesh& walls, const Complex& model, Complex& cut,
   const Pieces before = find_pieces(cut);
   double volume = 0;
   for (const double v : before.volume) volume += v;
-  const double length = o.size * std::cbrt(volume / before.count);
+  const double length = o.size * cube_root(volume / before.count);
   const double least = o.least * 0.1 * std::pow(length / 2, 3);
   // Half more than wanted: some do not break off. All places have the same chance, so the first of
   // those that do are taken.

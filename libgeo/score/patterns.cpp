@@ -12,6 +12,7 @@
 
 #include <Eigen/LU>
 
+#include "base/cube_root.h"
 #include "base/random.h"
 #include "base/sine.h"
 #include "kerf/error.h"
@@ -50,7 +51,7 @@ std::vector<double> interval_ends(double low, double high, int count, double une
 
 // The numbers of intervals along each axis that make about `cells` boxes of equal edges.
 std::array<int, 3> divisions(const Vec3& size, int cells) {
-  const double edge = std::cbrt(size.prod() / cells);
+  const double edge = cube_root(size.prod() / cells);
   std::array<int, 3> n;
   for (int k = 0; k < 3; ++k) n[std::size_t(k)] = std::max(1, int(std::lround(size[k] / edge)));
   return n;
@@ -75,7 +76,7 @@ TriangleMesh bricks(const Box3& box, int cells, const PatternOptions& o) {
   const Mat3 frame = frame_along(axis_of(box, o));
   const Box3 along = box_along(box, frame);
   const Vec3 size = along.hi - along.lo;
-  const double height = std::cbrt(size.prod() / (2.0 * cells));
+  const double height = cube_root(size.prod() / (2.0 * cells));
   const Vec3 half(height, 0.5 * height, height);
   Random random(o.seed);
   std::array<std::vector<double>, 3> at;
@@ -239,7 +240,7 @@ std::vector<Vec3> sample_sites(const TriangleBvh& skin, int count, const Mat3& s
       double nearest = std::numeric_limits<double>::infinity();
       for (const Vec3& s : sites) nearest = std::min(nearest, (q - s).norm());
       nearest /= spacing(p);
-      if (o.density) nearest *= std::cbrt(o.density(p));
+      if (o.density) nearest *= cube_root(o.density(p));
       if (nearest > farthest) {
         farthest = nearest;
         best = q;

@@ -18,6 +18,7 @@ void bind_score(py::module_& module);            ///< scores
 void bind_crack(py::module_& module);            ///< cracks given whole
 void bind_pieces(py::module_& module);           ///< pieces, bonds and hulls
 void bind_hierarchy(py::module_& module);        ///< crumbs and clusters of pieces
+void bind_impact(py::module_& module);           ///< solids that break where they are hit
 void bind_crack_edits(py::module_& module);      ///< remeshing, roughening, decimation
 void bind_checks(py::module_& module);           ///< reports, predicates, crossings
 void bind_mesh_methods(py::module_& module);     ///< repair, refinement, hulls

@@ -21,6 +21,7 @@ PYBIND11_MODULE(_kerf, module) {
   bind_crack(module);
   bind_pieces(module);
   bind_hierarchy(module);
+  bind_impact(module);
   bind_crack_edits(module);
   bind_checks(module);
   bind_mesh_methods(module);

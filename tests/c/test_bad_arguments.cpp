@@ -314,6 +314,18 @@ std::vector<Call> crack_calls() {
         return kerf_complex_join_small_pieces(h.any<kerf_complex>(), a.one_of({0.0, 0.01, -1.0, std::nan("")}));
       },
       [](Arguments& a, Handles& h) {
+        return kerf_complex_remesh(h.any<kerf_complex>(), a.one_of({15.0, 0.0, 90.0, std::nan("")}), nullptr, nullptr);
+      },
+      [](Arguments& a, Handles& h) {
+        return kerf_complex_roughen(h.any<kerf_complex>(), a.one_of({0.01, 0.0, -1.0, std::nan("")}),
+                                    a.one_of({2.0, 1e9, std::nan("")}), a.one_of<std::uint64_t>({1, ~0ull}), nullptr,
+                                    nullptr);
+      },
+      [](Arguments& a, Handles& h) {
+        return kerf_complex_decimate(h.any<kerf_complex>(), a.one_of({1e-3, 0.0, 2.0, std::nan("")}),
+                                     a.one_of<std::size_t>({0, 100, ~std::size_t(0)}), nullptr, nullptr);
+      },
+      [](Arguments& a, Handles& h) {
         kerf_front front = nullptr;
         return made(kerf_front_begin(h.any<kerf_complex>(), a.numbers(9), a.one_of<std::size_t>({9, 6, 3, 0, 7}),
                                      a.integer(), a.out(front)),

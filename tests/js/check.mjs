@@ -58,6 +58,35 @@ const tests = {
     assert.ok(pieces.every((piece) => piece.uv.length === 2 * piece.faces.length && piece.groupNames.includes("slope")));
     free(pieces), solid.delete();
   },
+  "a blow breaks a solid finer near it, within budgets, again and again"() {
+    const cube = k.shapes.block([1, 1, 1], { edge: 0.1 }), glass = new k.Breakable(cube);
+    const blow = [[1, 0.5, 0.5], 1500, { direction: [-1, 0, 0] }];
+    const breaking = glass.strike(...blow);
+    assert.ok(breaking.finished && breaking.pieces.length > 5);
+    near(sum(breaking.pieces.map(({ volume }) => volume)), 1);
+    for (const { mesh, volume, hulls, whole } of breaking.pieces) {
+      assert.ok(whole && hulls.length === 1 && hulls[0].volume >= volume * (1 - 1e-9));
+      assert.ok(mesh.check().closed && mesh.groupNames.includes("crack"));
+      near(mesh.volume, volume);
+    }
+    const mean = (list) => sum(list.map(({ volume }) => volume)) / list.length;
+    const at = (test) => breaking.pieces.filter(({ centroid }) => test(centroid[0]));
+    assert.ok(mean(at((x) => x > 0.7)) < 0.5 * mean(at((x) => x < 0.4)));
+    const slow = glass.strike(blow[0], blow[1], { ...blow[2], milliseconds: 0 });
+    let calls = 0;
+    for (; !slow.finished; calls++) near(sum(slow.pieces.map(({ volume }) => volume)), 1), slow.advance(0);
+    assert.ok(calls > 5 && slow.parts[0].parent === null && slow.parts[0].divided);
+    const part = breaking.pieces.reduce((a, b) => (a.volume > b.volume ? a : b)), again = part.solid.strike(part.centroid, 300);
+    near(sum(again.pieces.map(({ volume }) => volume)), part.volume);
+    assert.ok(again.pieces.length > 1);
+    assert.equal(cube.strike([1, 1, 1], 0).pieces.length, 1);
+    const refused = (work, words) => assert.throws(work, (error) => error.name === "InputError" && words.test(error.message));
+    refused(() => glass.strike([0, 0], 1), /point/), refused(() => glass.strike([0, 0, 0], -1), /energy/);
+    refused(() => glass.strike([0, 0, 0], "1"), /energy/), refused(() => glass.strike([0, 0, 0], 1, { maxPieces: 1 }), /maxPieces/);
+    refused(() => glass.strike([0, 0, 0], 1, { milliseconds: -1 }), /milliseconds/), refused(() => new k.Breakable("cube"), /Solid/);
+    free([breaking, slow, again, glass, cube]);
+    refused(() => slow.advance(1), /deleted/);
+  },
   "files of each format come back"() {
     const pumpkin = k.shapes.pumpkin(4);
     for (const format of ["ply", "off", "obj", "stl", "glb"]) {
@@ -134,6 +163,7 @@ const tests = {
     const round = () => {
       const pumpkin = k.shapes.pumpkin(6), pieces = pumpkin.fracture(6, { hulls: true }), again = k.load(pieces[0].save("ply"));
       assert.throws(() => new k.Solid(pumpkin.vertices, pumpkin.faces.subarray(3)));
+      pumpkin.strike([1, 0, 0], 2000).delete();
       free(pieces), again.delete(), pumpkin.delete();
     };
     round();

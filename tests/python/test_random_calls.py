@@ -97,6 +97,12 @@ class Case:
             return self.rng.choice(self.object("Complex").pieces())
         if name == "Front":
             return kerf.Front([[[-1, 0.5, z], [2, 0.5, z]] for z in (-0.1, 0.4, 1.1)])
+        if name == "Breakable":
+            return kerf.Breakable(self.object("Solid"))
+        if name == "Breaking":
+            return self.object("Breakable").strike([0.9, 0.8, 0.7], energy=500, seconds=0)
+        if name == "BrokenPart":
+            return self.object("Breaking").parts[-1]
         if name == "FrontState":
             return self.object("Complex").front([[-1, 0.5, -0.1], [2, 0.5, -0.1]])
         if name == "CrackDelta":

@@ -51,7 +51,8 @@ class Browser:
             self.requests.append(details["request"]["url"])
         return message
 
-    def send(self, method, **parameters):
+    def send(self, method, patience=120, **parameters):
+        """The browser's answer, which is awaited for `patience` seconds."""
         self.number += 1
         message = {"id": self.number, "method": method, "params": parameters}
         if self.session:
@@ -59,7 +60,7 @@ class Browser:
         data = json.dumps(message).encode() + b"\0"
         while data:
             data = data[os.write(self.to, data):]
-        until = time.time() + 120
+        until = time.time() + patience
         while True:
             answer = self.message(until)
             if answer.get("id") == self.number:
@@ -73,9 +74,9 @@ class Browser:
         while not self.loaded:
             self.message(until)
 
-    def run(self, script):
+    def run(self, script, patience=120):
         """The value of an expression, or of what it promises."""
-        result = self.send("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
+        result = self.send("Runtime.evaluate", patience, expression=script, awaitPromise=True, returnByValue=True)
         assert "exceptionDetails" not in result, f"{script}: {result['exceptionDetails']}"
         return result["result"].get("value")
 

@@ -180,8 +180,8 @@ TEST_CASE("a prescored front goes on where the load passes its toughness, and no
 
 TEST_CASE("a notched beam in three-point bending breaks at the handbook's load, with the energy that it is given",
           "[fracture]") {
-  // K = P S / (B W^1.5) f(a / W), with f(0.5) = 2.66 (Tada, Paris and Irwin 2000). The notch lies on
-  // lines of the skin.
+  // K = P S / (B W^1.5) f(a / W), with f(0.5) = 2.66 (Tada, Paris and Irwin 2000). The notch lies
+  // on lines of the skin.
   const double height = 0.04, span = 0.16, thickness = 0.004, toughness = 1e6;
   const double load = toughness * thickness * std::pow(height, 1.5) / (span * 2.66);
   Scene s;

@@ -20,9 +20,21 @@ def to_trimesh(self):
     return trimesh.Trimesh(**self.to_trimesh_kwargs())
 
 
+def _of_vertices(mesh, corners):
+    """Values of corners, of shape (n, 3, k), as means at vertices."""
+    import numpy as np
+
+    at = mesh.faces.reshape(-1)
+    values = corners.reshape(len(at), -1)
+    total = np.zeros((len(mesh.vertices), values.shape[1]))
+    np.add.at(total, at, values)
+    return total / np.maximum(np.bincount(at, minlength=len(total)), 1)[:, None]
+
+
 def to_open3d(self):
     """The mesh as an open3d.geometry.TriangleMesh, with texture coordinates and groups as material ids.
 
+    Colours and normals are those of its vertices: the means of their corners. Open3D's have no alpha.
     Raises kerf.Error without the package open3d.
     """
     _require_mesh(self, "to_open3d")
@@ -39,6 +51,12 @@ def to_open3d(self):
         made.triangle_uvs = of.Vector2dVector(np.array(self.uv).reshape(-1, 2))
     if self.groups is not None:
         made.triangle_material_ids = of.IntVector(np.array(self.groups))
+    if self.colors is not None:
+        made.vertex_colors = of.Vector3dVector(_of_vertices(self, self.colors[:, :, :3]))
+    if self.normals is not None:
+        mean = _of_vertices(self, self.normals)
+        length = np.linalg.norm(mean, axis=1)[:, None]
+        made.vertex_normals = of.Vector3dVector(mean / np.where(length > 0, length, 1))
     return made
 
 

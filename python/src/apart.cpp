@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "gil.h"
@@ -18,10 +20,23 @@ using namespace std::chrono_literals;
 std::atomic<int> threads = 0;
 
 void wait_for_threads() {
-  // A fit of a scan reports nothing, and lasts seconds on a machine without other work.
-  const auto limit = std::chrono::steady_clock::now() + 60s;
+  const auto limit = std::chrono::steady_clock::now() + 200ms;
   const GilRelease release;
   while (threads > 0 && std::chrono::steady_clock::now() < limit) std::this_thread::sleep_for(5ms);
+}
+
+// A fit of a scan reports nothing, so it cannot be stopped, and lasts a minute. Libraries that a
+// thread still uses must not be closed under it: the process ends here instead.
+void end_with_threads(int status, void*) {
+  if (threads == 0) return;
+  std::fflush(nullptr);
+  std::_Exit(status);
+}
+
+// Libraries that are loaded later close earlier, so this comes after those of the work.
+void end_with_threads_at_exit() {
+  static const int once = on_exit(&end_with_threads, nullptr);
+  static_cast<void>(once);
 }
 
 // Runs the work, in its thread. Nothing of Python is called.
@@ -54,6 +69,7 @@ void run_in_thread(const geo::Progress& progress, const std::string& phase,
                    std::function<void(const geo::Progress&)> work) {
   const auto shared = std::make_shared<Apart>();
   shared->phase = phase;
+  end_with_threads_at_exit();
   ++threads;
   std::thread(run, shared, std::move(work)).detach();
   std::unique_lock lock(shared->mutex);

@@ -112,12 +112,12 @@ def steps():
 
     # It ends by itself; one step of undo removes all of it, redo brings it back.
     seen.clear()
-    assert call(fracture, "INVOKE_DEFAULT", pieces=6, hulls=1, rigid_bodies=True) == {"RUNNING_MODAL"}
+    assert call(fracture, "INVOKE_DEFAULT", pieces=20, jagged=0.01, bumps=10, hulls=1, rigid_bodies=True) == {"RUNNING_MODAL"}
     yield
     yield from until_idle(60)
     yield
     after = data()
-    assert len(scenes.pieces_of("ball")) == 6 and len(scenes.pieces_of("box")) == 6
+    assert len(scenes.pieces_of("ball")) == 20 and len(scenes.pieces_of("box")) == 20
     assert {"ball", "box"} <= set(after["hidden"]) and not after["world"] and "Kerf Inner" in after["materials"]
     shares = [float(words.split()[1]) for words in seen]
     assert shares == sorted(shares) and any(0 < share < 1 for share in shares), seen

@@ -43,7 +43,7 @@ function membersOf(cls) {
   return [...names].filter((name) => !["constructor", "handle"].includes(name));
 }
 // Fields that a constructor sets are in no prototype.
-const fields = { Plane: ["point", "normal"], Front: ["steps", "closed"], Score: ["sheet", "pieces", "attempts"], Breaking: ["finished"],
+const fields = { Plane: ["point", "normal"], Front: ["steps", "closed"], Score: ["sheet", "pieces", "chips", "attempts"], Breaking: ["finished"],
   BrokenPart: ["index", "solid", "parent", "volume", "centroid", "divided", "whole", "hulls"], KerfError: ["name", "message", "stack", "cause"] };
 const loads = ["notes"];  // set by load() alone
 let classes = 0;

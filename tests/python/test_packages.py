@@ -80,6 +80,11 @@ again = kerf.Solid.from_open3d(made)
 assert np.array_equal(again.vertices[again.faces], model.vertices[model.faces])
 assert np.array_equal(again.uv, model.uv) and np.array_equal(again.groups, model.groups)
 assert all(abs(kerf.Solid.from_open3d(p.to_open3d()).volume / p.volume - 1) < 1e-12 for p in model.fracture(4))
+ball = kerf.shapes.sphere(8)
+outwards = ball.vertices / np.linalg.norm(ball.vertices, axis=1)[:, None]
+painted = kerf.Solid(ball.vertices, ball.faces, colors=0.5 + 0.5 * outwards, normals=outwards).to_open3d()
+assert np.abs(np.asarray(painted.vertex_colors) - (0.5 + 0.5 * outwards)).max() < 1e-6
+assert np.abs(np.asarray(painted.vertex_normals) - outwards).max() < 1e-6
 """
         for name, path in self.runs():
             with self.subTest(name):

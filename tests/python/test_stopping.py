@@ -123,6 +123,26 @@ for pause in (0.3, 0.8, 1.3):
         self.assertEqual(len(run.stdout.split()), 3, run.stdout + run.stderr)
         self.assertTrue(set(run.stdout.split()) <= {"ended", "stopped"}, run.stdout)
 
+    def test_exit_after_a_stopped_reconstruction(self):
+        """A fit cannot be stopped: the process ends beside it, with its own status."""
+        script = """
+import os, signal, sys, threading
+import kerf
+import numpy as np
+points = np.random.default_rng(1).normal(size=(300000, 3))
+points /= np.linalg.norm(points, axis=1)[:, None]
+threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    kerf.reconstruct(points)
+except KeyboardInterrupt:
+    print("stopped")
+    sys.exit(3)
+"""
+        begin = time.monotonic()
+        run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+        self.assertEqual((run.returncode, run.stdout), (3, "stopped\n"), run.stderr)
+        self.assertLess(time.monotonic() - begin, 10)
+
     def test_exit_with_daemon_threads(self):
         code = """
 import sys, threading, time

@@ -224,3 +224,48 @@ TEST_CASE("a notched beam in three-point bending breaks at the handbook's load, 
   INFO("force over the handbook's: " << force / load);
   CHECK(std::abs(force / load - 1) < 0.05);
 }
+
+TEST_CASE("a split strip is pulled apart at the load of beam theory, wherever its crack is", "[fracture]") {
+  // K = √12 P (a + 0.64 h) / (B h^1.5), with h the height of an arm (Kanninen 1973).
+  const double arm = 0.01, thickness = 0.0025, toughness = 4e5;
+  Scene s;
+  s.bodies.resize(1);
+  s.bodies[0].sampling.spacing = arm / 8;
+  s.bodies[0].sampling.levels = 1;
+  s.gravity = Vec3::Zero();
+  s.material = {.young = 3e9, .poisson = 0.3, .density = 1200, .damping = 2000};
+  s.frame_rate = 1000;
+  s.dt = 2.5e-4;
+  s.accuracy = 1e-7;
+  s.self_contact = false;
+  s.fracture.on = true;
+  s.fracture.strength = 1e12;
+  s.fracture.toughness = toughness;
+  s.fracture.variation = 0;
+  s.fracture.max_cracks = 0;
+  Front notch;
+  for (const double x : {-0.001, 0.04}) notch.steps.push_back({{x, arm, -2e-4}, {x, arm, thickness + 2e-4}});
+  s.scores = {{.front = notch}};
+  for (const double z : {0.0, thickness})
+    s.supports.push_back({.lo = {-far, -far, z - e}, .hi = {far, far, z + e}, .axes = {.z = true}});
+  for (const double way : {-1.0, 1.0}) {
+    s.supports.push_back({.lo = {-e, way > 0 ? 1.501 * arm : -far, -far},
+                          .hi = {e, way > 0 ? far : 0.501 * arm, far},
+                          .axes = {.y = true}});
+    s.supports.back().motion.keys = {{.time = 0, .position = Vec3::Zero()},
+                                     {.time = 0.04, .position = {0, way * 4e-4, 0}}};
+  }
+  s.supports.push_back({.lo = {0.1 - e, -far, -far}, .hi = {far, far, far}, .axes = {.x = true}});
+  Simulation run(s, make_block({0.1, 2 * arm, thickness}, 0.00125));
+  double length = 0.04;
+  for (int frame = 0; frame < 40; ++frame) {
+    const FrameStats stats = run.advance_frame();
+    REQUIRE(stats.fracture.tips.size() == 1);
+    length = stats.fracture.tips[0].at.x();
+    const double load = toughness * thickness * std::pow(arm, 1.5) / (std::sqrt(12.0) * (length + 0.64 * arm));
+    INFO("frame " << frame << ": " << length << ", force over theory: " << stats.support_force.at(2).y() / load);
+    CHECK(std::abs(stats.support_force.at(2).y()) < 1.08 * load);
+    if (length > 0.041) CHECK(std::abs(stats.support_force.at(2).y()) > 0.88 * load);
+  }
+  CHECK(length > 0.045);
+}

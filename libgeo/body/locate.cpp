@@ -33,13 +33,20 @@ bool is_blocked(const Complex& complex, const Vec3& p, const Vec3& q, FaceId exc
   return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return f != except && touches(complex, f, p, q); });
 }
 
-BoxVisibility::BoxVisibility(const Complex& complex, const Box3& box, std::span<const FaceId> except) {
+namespace {
+
+// The faces whose boxes meet `box`, without those in `except` (ascending).
+std::vector<FaceId> faces_in(const Complex& complex, const Box3& box, std::span<const FaceId> except) {
   std::vector<FaceId> faces;
   complex.faces_near(box, faces);
-  for (const FaceId f : faces)
-    if (!std::binary_search(except.begin(), except.end(), f)) triangles_.push_back(complex.corners(f));
-  for (const auto& t : triangles_) boxes_.push_back(box_of(t[0], t[1], t[2]));
+  std::erase_if(faces, [&](FaceId f) { return std::binary_search(except.begin(), except.end(), f); });
+  return faces;
 }
+
+}  // namespace
+
+BoxVisibility::BoxVisibility(const Complex& complex, const Box3& box, std::span<const FaceId> except)
+    : BoxVisibility(complex, faces_in(complex, box, except)) {}
 
 BoxVisibility::BoxVisibility(const Complex& complex, std::span<const FaceId> faces) {
   for (const FaceId f : faces) {

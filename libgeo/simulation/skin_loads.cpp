@@ -106,7 +106,7 @@ void SkinLoads::begin_substep(const std::vector<Vec3>& u, double from, double to
   for (Term& t : acting_) t.before = displacement(t, u);
 }
 
-// On the vertex, at the displacement d of all its nodes and rotations.
+// On the vertex, at its displacement d by all its nodes.
 Vec3 SkinLoads::force(const Term& term, const Vec3& d) const {
   const Action& load = actions_[term.load];
   if (!load.is_support) return term.area * load.now;

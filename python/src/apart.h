@@ -40,8 +40,9 @@ auto run_apart(const geo::Progress& progress, const std::string& phase, Work wor
   return std::move(**result);
 }
 
-/// Registers a function that runs before the interpreter ends: it waits for threads that were left
-/// alone, as they use what the end of the process destroys.
+/// Registers a function that runs before the interpreter ends: it waits a moment for threads that
+/// were left alone, as they use what the end of the process destroys. Where some go on, the process
+/// ends with its own status before libraries are closed.
 void wait_for_threads_at_exit();
 
 }  // namespace kerf_python

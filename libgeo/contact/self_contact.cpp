@@ -72,11 +72,24 @@ SelfContact::SelfContact(const Body& body, const Solid& solid, const ContactOpti
       weights_(weights_of(body, solid)),
       surface_(initial_surface(body, solid, weights_, std::move(positions))) {}
 
+// Vertices of which no copy that moves with them is carried by a node that is awake. `asleep`: per
+// node, or empty.
+std::vector<std::uint8_t> SelfContact::still_vertices(const std::vector<std::uint8_t>& asleep) {
+  if (asleep.empty()) return {};
+  const std::vector<std::uint32_t>& node = weights_.heaviest();
+  const Coincidence& coincidence = surface_.coincidence();
+  std::vector<std::uint8_t> still(node.size(), 0);
+  for (std::size_t v = 0; v < still.size(); ++v) {
+    const auto group = coincidence.coincident[coincidence.representative[v]];
+    still[v] = std::all_of(group.begin(), group.end(), [&](auto w) { return node[w] != ~0u && asleep[node[w]]; });
+  }
+  return still;
+}
+
 ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const State& state, double dt,
-                                    const Vec3& gravity, const std::vector<std::uint8_t>& fixed,
-                                    const ContactPace& pace) {
+                                    const Environment& environment, const ContactPace& pace) {
   update_weights(body, solid, state.displacement);
-  const FreeMotion free = free_motion(body, solid, state, dt, gravity, fixed);
+  const FreeMotion free = free_motion(body, solid, state, dt, environment);
   const std::vector<Vec3>& targets = targets_at(state.displacement);
   const std::vector<Vec3> free_targets = surface_targets(weights_, free.displacement),
                           mean_targets = surface_.coincidence().averaged(targets);
@@ -89,10 +102,11 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
   // Slip regularisation ε = 0.01 g dt² + 1e-9 edge: slip below a hundredth of the distance g dt²
   // of one step counts as rest. The second term keeps ε > 0 without gravity.
   const SelfContactPenaltyOptions penalty_options{options_.friction,
-                                                  1e-2 * dt * dt * gravity.norm() + 1e-9 * surface().edge};
+                                                  1e-2 * dt * dt * environment.gravity.norm() + 1e-9 * surface().edge};
   step.penalty = spare_penalty_ ? std::move(spare_penalty_) : std::make_unique<SelfContactPenalty>(penalty_options);
   step.penalty->restart(penalty_options);
-  near_.invalidate();
+  step.still = still_vertices(environment.asleep);
+  near_.select(moving_triangles(surface().triangles, step.still));
   assemble_penalty({.body = body,
                     .solid = solid,
                     .weights = weights_,
@@ -115,7 +129,7 @@ ContactStats SelfContact::finish_step(ContactStep step, const Solid& solid, cons
   Stopwatch clock;
   const std::size_t touching = step.penalty->pressing();
   take_rotations(solid, displacement);
-  ContactStats stats = move_surface(displacement, &step.tracking_error);
+  ContactStats stats = move_surface(displacement, &step);
   stats.touching = touching;
   spare_penalty_ = std::move(step.penalty);
   stats.seconds = clock.lap();
@@ -141,19 +155,23 @@ void SelfContact::take_rotations(const Solid& solid, const std::vector<Vec3>& u)
   if (weights_.set_rotations(solid, u)) targets_ = {};
 }
 
-// Opens sheets, then moves all vertices towards their targets at displacements u. `tracking_error`:
-// of the step's beginning; null: not known.
-ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error) {
+// Opens sheets, then moves all vertices towards their targets at displacements u. `step`: null
+// where there was none.
+ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const ContactStep* step) {
   ContactStats stats;
-  const std::vector<Vec3>& targets = targets_at(u);
+  std::vector<Vec3> targets = targets_at(u);
+  for (std::size_t v = 0; step && v < step->still.size(); ++v)
+    if (step->still[v]) targets[v] = positions()[v];
   std::vector<Vec3> opened = positions();
   stats.opened = open_sheets(surface(), surface_.fans(), surface_.coincidence().coincident, targets, gap(),
                              options_.opening * surface().edge, opened);
   if (stats.opened > 0) surface_.move_to(std::move(opened));
   const Coincidence& coincidence = surface_.coincidence();
-  const std::vector<Vec3> goal = coincidence.averaged(targets);
-  std::vector<Vec3> guess;
-  if (tracking_error) guess = likely_positions(goal, *tracking_error, coincidence.representative, surface().edge);
+  std::vector<Vec3> goal = coincidence.averaged(targets), guess;
+  if (step) guess = likely_positions(goal, step->tracking_error, coincidence.representative, surface().edge);
+  // A mean of equal positions may differ from them by rounding.
+  for (std::size_t v = 0; step && v < step->still.size(); ++v)
+    if (step->still[v]) goal[v] = guess[v] = positions()[v];
   BoundedMotionStats bounded;
   surface_.move_to(move_without_crossing({.triangles = surface().triangles,
                                           .representative = coincidence.representative,
@@ -161,7 +179,8 @@ ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const std::ve
                                           .to = goal,
                                           .gap = gap(),
                                           .reach = 2 * gap(),
-                                          .guess = tracking_error ? &guess : nullptr},
+                                          .guess = step ? &guess : nullptr,
+                                          .still = step ? step->still : std::span<const std::uint8_t>()},
                                          true, &bounded, &near_, &surface_.fans()));
   ++revision_;
   near_.invalidate();

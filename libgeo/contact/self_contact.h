@@ -31,6 +31,7 @@ struct ContactStep {
 
   std::unique_ptr<SelfContactPenalty> penalty;  ///< null: finished
   std::vector<Vec3> tracking_error;             ///< per surface vertex, position less mean target at the beginning
+  std::vector<std::uint8_t> still = {};         ///< per surface vertex: 1 where it sleeps; empty: none does
   std::uint64_t revision = 0;                   ///< SelfContact::revision() at the beginning
 };
 
@@ -56,10 +57,10 @@ class SelfContact {
   SelfContact(const Body& body, const Solid& solid, const ContactOptions& options = {},
               std::vector<Vec3> positions = {});
 
-  /// Begins an implicit time step of dt seconds at `state`: finds what may touch in it. `gravity`
-  /// in model units / s². `fixed`: per node, or empty, as in Environment.
-  ContactStep begin_step(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
-                         const std::vector<std::uint8_t>& fixed, const ContactPace& pace = {});
+  /// Begins an implicit time step of dt seconds at `state`: finds what may touch in it. Uses
+  /// gravity, fixed and sleeping nodes of `environment`. The surface of what sleeps stays.
+  ContactStep begin_step(const Body& body, const Solid& solid, const State& state, double dt,
+                         const Environment& environment, const ContactPace& pace = {});
   /// Moves the surface after the nodes' implicit step, which has ended at `displacement`, per node.
   /// Reads nothing of the body, whose next crack may begin meanwhile. Throws std::logic_error when
   /// the surface has changed since `step` began, or `step` was finished.
@@ -101,7 +102,8 @@ class SelfContact {
  private:
   void take_rotations(const Solid& solid, const std::vector<Vec3>& u);
   double gap() const { return options_.gap * surface().edge; }
-  ContactStats move_surface(const std::vector<Vec3>& u, const std::vector<Vec3>* tracking_error);
+  std::vector<std::uint8_t> still_vertices(const std::vector<std::uint8_t>& asleep);
+  ContactStats move_surface(const std::vector<Vec3>& u, const ContactStep* step);
 
   ContactOptions options_;
   SurfaceWeights weights_;

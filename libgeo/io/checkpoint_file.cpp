@@ -224,6 +224,10 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
                               kerf_array("run/time", std::span(&state.time, 1))};
   if (!state.motion.acceleration.empty())
     more.push_back(kerf_array("run/acceleration", coordinates(state.motion.acceleration), 3));
+  if (!state.rest.time.empty()) {
+    more.push_back(kerf_array("run/rest_anchor", coordinates(state.rest.anchor), 3));
+    more.push_back(kerf_array("run/rest_time", std::span<const double>(state.rest.time)));
+  }
   const std::vector<Vec3> plastic = columns_of(state.motion.plastic), rotation = columns_of(state.motion.rotation);
   if (!plastic.empty()) more.push_back(kerf_array("run/plastic", coordinates(plastic), 3));
   const GluedNumbers glued(state.glued);
@@ -255,6 +259,11 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   state.motion.plastic = read_matrices(file, "run/plastic");
   state.motion.rotation = read_matrices(file, "run/rotation");
   state.surface = read_points(file, "run/surface");
+  if (file.sections().count("run/rest_time") != 0) {
+    state.rest = {.anchor = read_points(file, "run/rest_anchor"), .time = file.read<double>("run/rest_time")};
+    if (state.rest.anchor.size() != state.rest.time.size() || state.rest.time.size() > c.body.nodes.size())
+      file.fail("the sections of rest have different lengths");
+  }
   state.glued = read_glued(file);
   state.body_index = file.read<std::uint32_t>("run/part");
   const auto time = file.read<double>("run/time");

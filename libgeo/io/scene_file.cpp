@@ -366,6 +366,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     t.get("frame_rate", s.frame_rate, 1e-6, 1e9);
     t.get("step", s.dt, 1e-9, 1e6);
     t.get("accuracy", s.accuracy, 1e-9, 0.1);
+    t.get("sleep", s.sleep, 0, 1e9);
     t.get("checkpoint_every", s.checkpoint_every, 1, 1000000);
     read_checkpoints(t, s);
     std::string integrator = "implicit";

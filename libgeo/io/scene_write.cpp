@@ -249,6 +249,7 @@ void SceneWriter::time(const Scene& s) {
   key("frame_rate", s.frame_rate);
   key("step", s.dt);
   key("accuracy", s.accuracy);
+  if (s.sleep > 0) key("sleep", s.sleep);
   whole("checkpoint_every", static_cast<std::uint64_t>(s.checkpoint_every));
   std::string frames;
   for (const int f : s.checkpoints) frames += (frames.empty() ? "" : ", ") + std::to_string(f);

@@ -26,7 +26,7 @@ Collisions::Collisions(const Scene& scene, const Body& body, const Solid& solid,
 std::optional<ContactStep> Collisions::begin_step(const Body& body, const Solid& solid, const State& motion, double dt,
                                                   const ContactPace& pace, Environment& environment) {
   if (!surface_ || !implicit_) return {};
-  ContactStep step = surface_->begin_step(body, solid, motion, dt, environment.gravity, environment.fixed, pace);
+  ContactStep step = surface_->begin_step(body, solid, motion, dt, environment, pace);
   if (Potential* potential = step.potential()) environment.contact.push_back(potential);
   return step;
 }

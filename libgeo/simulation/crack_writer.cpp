@@ -66,6 +66,7 @@ void CrackWriter::hand_on(const BodyDelta& delta, std::optional<EmbeddingPlan> p
     followers_->solid.follow(delta);
     followers_->way.add_nodes(delta.donors);
     followers_->loads.follow_crack();
+    followers_->sleep.wake(delta.updated_nodes);
   }
   const Timed timed(stats.contact_seconds);
   followers_->collisions.commit(std::move(plan), body_, delta);

@@ -14,6 +14,7 @@
 #include "simulation/collisions.h"
 #include "simulation/cut_solid.h"
 #include "simulation/node_loads.h"
+#include "simulation/sleep.h"
 
 namespace geo {
 
@@ -25,6 +26,7 @@ struct CrackFollowers {
   NodeWay& way;
   Collisions& collisions;
   NodeLoads& loads;
+  Sleep& sleep;
 };
 
 /// A crack step that has begun: the complex has it, nothing else. Dropped, it is taken back.

@@ -22,6 +22,11 @@ bool holds_at(const Grip& grip, double time) {
 
 }  // namespace
 
+bool GrippedNodes::change(const std::vector<Grip>& grips, double begin, double end) {
+  return std::any_of(grips.begin(), grips.end(),
+                     [&](const Grip& grip) { return holds_at(grip, begin) != holds_at(grip, end); });
+}
+
 GrippedNodes::GrippedNodes(const std::vector<Grip>& grips, const NodeSet& nodes) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Vec3& x = nodes.position[i];

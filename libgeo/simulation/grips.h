@@ -15,6 +15,8 @@ namespace geo {
 /// exists at the time.
 class GrippedNodes {
  public:
+  /// Whether other grips hold at the end of a time step than at its beginning, s.
+  static bool change(const std::vector<Grip>& grips, double begin, double end);
   /// None.
   GrippedNodes() = default;
   /// The nodes in each grip's box, by their material positions.

@@ -133,6 +133,19 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
     if (!o.empty()) environment.contact.push_back(&o);
 }
 
+std::vector<const Potential*> Obstacles::moving() const {
+  std::vector<const Potential*> result;
+  for (const ObstaclePenalty& o : obstacles_)
+    if (o.moves()) result.push_back(&o);
+  return result;
+}
+
+bool Obstacles::any_moves(const Scene& scene, const TimeStep& step) {
+  return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [&](const SceneObstacle& o) {
+    return isometry(o.pose(step.begin)).matrix() != isometry(o.pose(step.end)).matrix();
+  });
+}
+
 void Obstacles::add_reactions(const State& motion, double share, FrameStats& stats) const {
   stats.obstacle_force.resize(shapes_.size(), Vec3::Zero());
   stats.obstacle_torque.resize(shapes_.size(), Vec3::Zero());

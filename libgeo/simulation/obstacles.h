@@ -8,6 +8,7 @@
 #include "contact/response/obstacle_penalty.h"
 #include "kerf/scene.h"
 #include "kerf/simulation.h"
+#include "simulation/node_loads.h"
 
 namespace geo {
 
@@ -33,6 +34,10 @@ class Obstacles {
 
   /// Adds the potentials of a time step to `environment`; valid until the next call.
   void add_potentials(const ObjectContactStep& step, Environment& environment);
+  /// The potentials of add_potentials() whose obstacles move in the step.
+  std::vector<const Potential*> moving() const;
+  /// Whether an obstacle moves in a time step.
+  static bool any_moves(const Scene& scene, const TimeStep& step);
   /// Adds to `stats`, after a time step, `share` of the mean forces and torques on the obstacles.
   void add_reactions(const State& motion, double share, FrameStats& stats) const;
 

@@ -2,6 +2,7 @@
 // beside each other.
 #include "simulation/time_loop.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -44,13 +45,17 @@ TimeLoop::TimeLoop(RunData& run)
       obstacles_(run.scene),
       loads_(run.scene, run.body),
       collisions_(run.scene, run.body, run.solid.nodes(), run.state.surface),
-      writer_(
-          run.body, run.state.body_index, crack_options(run.scene, run.body),
-          CrackFollowers{
-              .solid = run.solid, .motion = run.state.motion, .way = way_, .collisions = collisions_, .loads = loads_}),
+      writer_(run.body, run.state.body_index, crack_options(run.scene, run.body),
+              CrackFollowers{.solid = run.solid,
+                             .motion = run.state.motion,
+                             .way = way_,
+                             .collisions = collisions_,
+                             .loads = loads_,
+                             .sleep = sleep_}),
       cuts_(run.scene, run.body, run.state, writer_),
       bonds_(run.body, run.state, writer_),
-      skin_(run.scene, run.body) {
+      skin_(run.scene, run.body),
+      sleep_(run.scene, run.state) {
   hold_material(run.state.time);
   apply_changes(run.state.time);
 }
@@ -61,6 +66,7 @@ void TimeLoop::apply_changes(double time) {
   run_.solid.set_materials(materials_of(run_.scene, run_.state.body_index));
   collisions_.set_friction(run_.scene.contact.friction);
   loads_.follow_scene();
+  sleep_.wake_all();
 }
 
 FrameStats TimeLoop::advance_frame(const Progress& progress) {
@@ -120,6 +126,14 @@ TimeLoop::Outcome TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   std::optional<State> start;  // to go back to
   if (may_break()) start = run_.state.motion;
   loads_.begin_step(step, run_.solid.nodes(), run_.state.motion);
+  if (sleep_.on()) {
+    if (GrippedNodes::change(run_.scene.grips, step.begin, step.end)) sleep_.wake_all();
+    sleep_.begin_step(run_.solid.nodes(), before, step.dt, loads_.environment());
+    if (sleep_.all() && has_stepped_ && !cuts_.any_at(step.begin) && !Obstacles::any_moves(run_.scene, step)) {
+      sleep_on(step, stats);
+      return Outcome::taken;
+    }
+  }
   std::optional<ContactStep> contact = begin_contact(step, stats);
   const StepReport report = move_nodes(step, stats);
   if (start && (!report.converged || is_too_long(step, *start, stats))) {
@@ -137,6 +151,22 @@ TimeLoop::Outcome TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   return Outcome::taken;
 }
 
+// A step in which all sleeps: forces and energy are those of the frame before, which a loop that
+// has just begun does not know.
+void TimeLoop::sleep_on(const TimeStep& step, FrameStats& stats) {
+  const FrameStats& last = run_.state.total;
+  const double share = step.dt * run_.scene.frame_rate;
+  const auto add = [&](std::vector<Vec3>& to, const std::vector<Vec3>& from) {
+    to.resize(std::max(to.size(), from.size()), Vec3::Zero());
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] += share * from[i];
+  };
+  if (stats.steps == 0) stats.energy = last.energy;
+  add(stats.obstacle_force, last.obstacle_force);
+  add(stats.obstacle_torque, last.obstacle_torque);
+  ++stats.steps;
+  run_.state.time = step.end;
+}
+
 bool TimeLoop::is_too_long(const TimeStep& step, const State& before, FrameStats& stats) {
   const TimedRest rest(stats, &FrameStats::fracture_seconds);
   return bonds_.is_too_long(run_.solid.whole(), before, run_.scene.gravity, run_.scene.contact.friction, step.dt);
@@ -146,6 +176,24 @@ bool TimeLoop::is_too_long(const TimeStep& step, const State& before, FrameStats
 bool TimeLoop::may_break() const {
   const FractureOptions& options = run_.scene.fracture;
   return bonds_.any_left() && (!options.on || run_.state.time >= options.start);
+}
+
+// Obstacles that move wake what they come near.
+void TimeLoop::add_obstacles(const TimeStep& step, double stopping) {
+  const Solid& nodes = run_.solid.nodes();
+  const State& motion = run_.state.motion;
+  obstacles_.add_potentials({.scene = run_.scene,
+                             .body = run_.body,
+                             .solid = nodes,
+                             .weights = collisions_.weights(),
+                             .surface = collisions_.targets(motion),
+                             .motion = motion,
+                             .time = step.begin,
+                             .dt = step.dt,
+                             .stopping = stopping},
+                            loads_.environment());
+  for (const Potential* potential : obstacles_.moving())
+    if (sleep_.on()) sleep_.wake(nodes, *potential, loads_.environment());
 }
 
 // Adds obstacles and self-contact to the loads. The result owns the potential of self-contact.
@@ -165,20 +213,10 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
     if (!skin_.empty()) loads_.environment().contact.push_back(&skin_);
     cohesion_.begin_step(run_.body, run_.state.glued, collisions_.weights());
     if (!cohesion_.empty()) loads_.environment().contact.push_back(&cohesion_);
-    if (obstacles_.any()) {
-      obstacles_.add_potentials({.scene = run_.scene,
-                                 .body = run_.body,
-                                 .solid = nodes,
-                                 .weights = collisions_.weights(),
-                                 .surface = collisions_.targets(motion),
-                                 .motion = motion,
-                                 .time = step.begin,
-                                 .dt = step.dt,
-                                 .stopping = stopping},
-                                loads_.environment());
-    }
-    contact = collisions_.begin_step(run_.body, nodes, motion, step.dt, {.stopping = stopping, .whole_step = whole},
-                                     loads_.environment());
+    if (obstacles_.any()) add_obstacles(step, stopping);
+    const ContactPace pace{.stopping = stopping, .whole_step = whole};
+    Environment& environment = loads_.environment();
+    contact = collisions_.begin_step(run_.body, nodes, motion, step.dt, pace, environment);
   };
   parallel_invoke([&] { run_.solid.whole(); }, begin);
   return contact;
@@ -209,6 +247,8 @@ void TimeLoop::take(const StepReport& report, const TimeStep& step, FrameStats& 
   stats.fracture.spent += cohesion_.end_step(motion.displacement, run_.state.glued);
   obstacles_.add_reactions(motion, share, stats);
   if (skin_.any()) skin_.end_step(motion.displacement, share, stats);
+  if (sleep_.on()) sleep_.end_step(run_.solid.nodes(), step.dt);
+  has_stepped_ = true;
   ++stats.steps;
   stats.energy = report.energy;
 }

@@ -16,6 +16,7 @@
 #include "simulation/obstacles.h"
 #include "simulation/run_data.h"
 #include "simulation/skin_loads.h"
+#include "simulation/sleep.h"
 
 namespace geo {
 
@@ -30,7 +31,10 @@ class TimeLoop {
   /// See Simulation::advance_frame().
   FrameStats advance_frame(const Progress& progress);
   /// The scene's list of grips has changed.
-  void follow_grips() { loads_.follow_scene(); }
+  void follow_grips() {
+    loads_.follow_scene();
+    sleep_.wake_all();
+  }
   /// The deformed surface.
   const Collisions& collisions() const { return collisions_; }
 
@@ -41,6 +45,8 @@ class TimeLoop {
   // The fate of a time step. One that was not taken has changed nothing.
   enum class Outcome { taken, too_long, not_found };
   Outcome step(const TimeStep& step, FrameStats& stats);
+  void sleep_on(const TimeStep& step, FrameStats& stats);
+  void add_obstacles(const TimeStep& step, double stopping);
   std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);
   StepReport move_nodes(const TimeStep& step, FrameStats& stats);
   void take(const StepReport& report, const TimeStep& step, FrameStats& stats);
@@ -64,6 +70,8 @@ class TimeLoop {
   BondBreaker bonds_;
   CohesiveWalls cohesion_;
   SkinLoads skin_;
+  Sleep sleep_;
+  bool has_stepped_ = false;  // RunState::total has forces and energy
 };
 
 }  // namespace geo

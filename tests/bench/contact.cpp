@@ -66,8 +66,7 @@ int contact(const Options& options) {
     for (int step = 0; step < steps; ++step) {
       double start = cpu_seconds();
       environment.contact.clear();
-      geo::ContactStep contact =
-          surface.begin_step(body, solid, state, 1.0 / 24, environment.gravity, environment.fixed);
+      geo::ContactStep contact = surface.begin_step(body, solid, state, 1.0 / 24, environment);
       if (geo::Potential* potential = contact.potential()) environment.contact.push_back(potential);
       double one = cpu_seconds() - start;
       start = cpu_seconds();

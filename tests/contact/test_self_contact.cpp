@@ -61,7 +61,7 @@ struct CutBlock {
     return contact.finish_step_with_impulses(body, solid, before, dt, {}, state);
   }
   ContactStats implicit_step(double dt) {
-    ContactStep step = contact.begin_step(body, solid, state, dt, environment.gravity, {});
+    ContactStep step = contact.begin_step(body, solid, state, dt, environment);
     environment.contact.clear();
     if (Potential* potential = step.potential()) environment.contact.push_back(potential);
     solid.step_implicit(state, dt, environment);
@@ -137,7 +137,8 @@ TEST_CASE("steps and plans that no longer fit the surface are refused") {
   CutBlock block(1, 0.5);
   block.cut_to(0.7, 0);
   const auto begin = [&] {
-    return block.contact.begin_step(block.body, block.solid, block.state, 0.02, {0, 0, 0}, {});
+    return block.contact.begin_step(block.body, block.solid, block.state, 0.02,
+                                    {.gravity = Vec3::Zero(), .fixed = {}, .load = {}, .contact = {}});
   };
   const auto finish = [&](ContactStep step) {
     return block.contact.finish_step(std::move(step), block.solid, block.state.displacement);

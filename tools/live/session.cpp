@@ -12,10 +12,17 @@
 
 namespace live {
 
+namespace {
+
+constexpr double rest_before_sleep = 0.5;  // s: longer than a hand rests between two strokes is of no use
+
+}  // namespace
+
 void adapt_scene(geo::Scene& scene, double rate, bool blades) {
   scene.frame_rate = rate;
   scene.dt = std::min(scene.dt, 1 / rate);
   scene.checkpoint_every = 1000000;
+  if (scene.sleep == 0) scene.sleep = rest_before_sleep;
   if (!blades) scene.blades.clear();
 }
 

@@ -35,7 +35,7 @@ bool BroadPhase::update(std::span<const Triangle> triangles, const std::function
   if (!valid || (count * rebuild_share > triangles.size() && !changed)) {
     valid_ = false;
     tree_.refit_or_rebuild(std::move(boxes), triangles);
-    std::optional<std::vector<Pair>> all = tree_.pairs_up_to(most);
+    std::optional<std::vector<Pair>> all = tree_.pairs_up_to(most, marked_.empty() ? nullptr : &marked_);
     valid_ = all.has_value();
     pairs_ = std::move(all).value_or(std::vector<Pair>());
     return valid_;

@@ -41,6 +41,13 @@ class BroadPhase {
   /// rest if the whole motion has more than that.
   std::size_t most_of_motion() const { return most_of_motion_; }
 
+  /// From now on pairs() has only those with a triangle that is marked (1); empty: all. Discards
+  /// pairs as invalidate() does.
+  void select(std::vector<std::uint8_t> marked) {
+    invalidate();
+    marked_ = std::move(marked);
+  }
+
   /// Pairs i < j, each once, in no order that results may depend on.
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// Scratch memory for the caller's culling of pairs(), which is reused from step to step.
@@ -53,14 +60,15 @@ class BroadPhase {
   }
   /// Discards everything. Must be called before an update with other triangles.
   void reset() {
-    invalidate();
+    select({});
     tree_ = {};
   }
 
  private:
   TrianglePlanes planes_;
   AabbTree tree_;
-  bool valid_ = false;  // tree_ has the boxes of this step
+  std::vector<std::uint8_t> marked_;  // per triangle, or empty: select()
+  bool valid_ = false;                // tree_ has the boxes of this step
   std::size_t most_of_motion_ = 0;
   std::vector<Pair> pairs_;
 };

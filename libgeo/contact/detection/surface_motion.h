@@ -21,7 +21,21 @@ struct SurfaceMotion {
   /// If given: positions near `to` that are less likely to cross. They become the end if they are
   /// certified.
   const std::vector<Vec3>* guess = nullptr;
+  /// Per vertex: 1 where it stays at `from`, as `to` and `guess` say, too. Empty: none does.
+  std::span<const std::uint8_t> still = {};
 };
+
+/// Per triangle: 1 where a vertex is not still. `still`: as SurfaceMotion::still; empty: the result
+/// is empty, too.
+inline std::vector<std::uint8_t> moving_triangles(const std::vector<Triangle>& triangles,
+                                                  std::span<const std::uint8_t> still) {
+  std::vector<std::uint8_t> moving(still.empty() ? 0 : triangles.size());
+  for (std::size_t t = 0; t < moving.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    moving[t] = !still[a] || !still[b] || !still[c];
+  }
+  return moving;
+}
 
 /// A share of the straight motion of some vertices from `start` to `end`; the others stay. A share
 /// of 0 does not read `end`.

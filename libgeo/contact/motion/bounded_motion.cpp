@@ -47,7 +47,14 @@ class CrossingFreeMotion {
  public:
   CrossingFreeMotion(const SurfaceMotion& m, bool two_sided, BroadPhase& near, const VertexFans& fans,
                      BoundedMotionStats& stats)
-      : m_(m), two_sided_(two_sided), near_(near), fans_(fans), stats_(stats), surface_(m), at_(m.from) {
+      : m_(m),
+        still_(m.still),
+        two_sided_(two_sided),
+        near_(near),
+        fans_(fans),
+        stats_(stats),
+        surface_(m),
+        at_(m.from) {
     edge_ = mean_edge();
     double size = 0;
     for (const auto v : surface_.vertices)
@@ -102,7 +109,7 @@ class CrossingFreeMotion {
 
   Outcome advance(int round) {
     std::vector<Vec3> start = at_;
-    if (round == 0) apply_affine_fit(surface_.vertices, at_, m_.to, start);
+    if (round == 0 && still_.empty()) apply_affine_fit(surface_.vertices, at_, m_.to, start);
     std::vector<Vec3> next = straight(start, round == 0 && m_.guess ? *m_.guess : m_.to);
     const double share = shorten(start, next);
     if (project_targets(start, next)) {
@@ -145,12 +152,12 @@ class CrossingFreeMotion {
 
   // Changes `next` until the motion from `start` is certified. Returns whether it is.
   bool project_targets(const std::vector<Vec3>& start, std::vector<Vec3>& next) {
-    SeparationProjection projection(surface_.triangles, start, m_.gap);
+    SeparationProjection projection(surface_.triangles, start, m_.gap, still_);
     MotionCertifier certify = certifier(start, next);
     const MotionCertifier::KnownDisjoint rigid = [&](std::uint32_t s, std::uint32_t t, double) {
       return projection.is_rigid(s, t);
     };
-    std::vector<std::uint8_t> changed(surface_.triangles.size(), 1);
+    std::vector<std::uint8_t> changed = all_changed();
     std::size_t fewest = ~std::size_t(0);  // uncertified pairs at the last progress
     int last_progress = 0;                 // the iteration of it
     bool certified = false;
@@ -163,7 +170,9 @@ class CrossingFreeMotion {
         last_progress = i;
       }
       const std::vector<Vec3> before = next;
-      if (i - last_progress < patience)
+      const bool patient = i - last_progress < patience;
+      if (!patient && !still_.empty()) break;  // the fallback moves what sleeps, too
+      if (patient)
         projection.add(uncertified, next);
       else {
         projection.make_rigid(uncertified);
@@ -172,7 +181,7 @@ class CrossingFreeMotion {
       }
       evaluations_ += projection.project(next, evaluations_left());
       if (next == before) {
-        if (!projection.make_rigid(uncertified)) break;
+        if (!still_.empty() || !projection.make_rigid(uncertified)) break;
         evaluations_ += projection.project(next, evaluations_left());
       }
       mark_changed(before, next, changed);
@@ -180,11 +189,20 @@ class CrossingFreeMotion {
       if (!update_near(start, next, changed)) break;
     }
     stats_.in_zones = std::max(stats_.in_zones, projection.in_zones());
-    return certified;
+    return certified && stay(start, next);
+  }
+
+  // Whether no zone has moved what is still, whose pairs are not looked at.
+  bool stay(const std::vector<Vec3>& start, const std::vector<Vec3>& next) const {
+    for (std::size_t v = 0; v < still_.size(); ++v)
+      if (still_[v] && next[v] != start[v]) return false;
+    return true;
   }
 
   // Moves at_ from `start`, by the fallback where the straight motion is not certified.
   Outcome fall_back(const std::vector<Vec3>& start) {
+    if (!still_.empty()) near_.select({});
+    still_ = {};
     std::vector<Vec3> next = straight(start, m_.to);
     const double share = shorten(start, next);
     const std::vector<Vec3> to = next;
@@ -256,7 +274,14 @@ class CrossingFreeMotion {
     return [&](std::size_t t) { return surface_.swept_box(t, start, next); };
   }
 
+  // Triangles whose end is to be certified first.
+  std::vector<std::uint8_t> all_changed() const {
+    return still_.empty() ? std::vector<std::uint8_t>(surface_.triangles.size(), 1)
+                          : moving_triangles(m_.triangles, still_);
+  }
+
   const SurfaceMotion& m_;
+  std::span<const std::uint8_t> still_;  // as SurfaceMotion::still, until the fallback moves all
   bool two_sided_;
   BroadPhase& near_;
   const VertexFans& fans_;

@@ -92,6 +92,10 @@ void SeparationProjection::add(std::span<const Pair> pairs, const std::vector<Ve
     if (constraints_[i].axis.isZero(0)) make_rigid({{{constraints_[i].s, constraints_[i].t}}});
 }
 
+bool SeparationProjection::is_still(const Simplex& simplex) const {
+  return !still_.empty() && still_[simplex.v[0]] && still_[simplex.v[1]] && still_[simplex.v[2]];
+}
+
 bool SeparationProjection::make_rigid(std::span<const Pair> pairs) {
   bool changed = false;
   for (const auto& [s, t] : pairs) changed |= zones_.merge(triangles_[s], triangles_[t]);
@@ -131,9 +135,12 @@ std::size_t SeparationProjection::project(std::vector<Vec3>& next, std::size_t m
       }
       const double low = std::min({at_a[0], at_a[1], at_a[2]}), high = std::max({at_b[0], at_b[1], at_b[2]});
       if (low - high >= c.separation) continue;
-      const double middle = 0.5 * (low + high), half = 0.5 * (1 + margin) * c.separation;
+      const bool a_stays = is_still(c.a), b_stays = is_still(c.b);
+      if (a_stays && b_stays) continue;
+      const double half = 0.5 * (1 + margin) * c.separation;
+      const double middle = a_stays ? low - half : b_stays ? high + half : 0.5 * (low + high);
       const auto move = [&](std::uint32_t v, double deficit, double sign) {
-        if (!(deficit > 0)) return;
+        if (!(deficit > 0) || (!still_.empty() && still_[v])) return;
         next[v] += sign * deficit * c.axis;
         mark_moved(v);
       };

@@ -25,9 +25,11 @@ class SeparationProjection {
   /// Indices of two triangles.
   using Pair = std::pair<std::uint32_t, std::uint32_t>;
   /// No constraints yet. `start`: per vertex, where no triangles cross. `gap`: separation to be
-  /// kept, model units; pairs that start nearer keep what they have. Refers to triangles and start.
-  SeparationProjection(const std::vector<Triangle>& triangles, const std::vector<Vec3>& start, double gap)
-      : triangles_(triangles), start_(start), gap_(gap), zones_(start.size()) {}
+  /// kept, model units; pairs that start nearer keep what they have. `still`: per vertex, 1 where
+  /// it is not moved, unless a zone is made rigid; empty: none. Refers to all but the gap.
+  SeparationProjection(const std::vector<Triangle>& triangles, const std::vector<Vec3>& start, double gap,
+                       std::span<const std::uint8_t> still = {})
+      : triangles_(triangles), start_(start), gap_(gap), still_(still), zones_(start.size()) {}
 
   /// Adds constraints for pairs that the motion from the start to `next` does not certify; replaces
   /// older constraints of the same pairs. The axis has the largest end separation among axes with
@@ -43,7 +45,8 @@ class SeparationProjection {
   std::size_t in_zones() const { return zones_.vertex_count(); }
 
   /// Moves `next`, per vertex, until all constraints hold, or for a number of sweeps: Gauss–Seidel
-  /// in the order in which constraints were added, each moving both sides by the same least amount.
+  /// in the order in which constraints were added, each moving both sides by the same least amount,
+  /// or one by all of it where the other is still.
   /// Zones are made rigid after each sweep. Returns the number of evaluations of constraints;
   /// no sweep begins once this is `max_evaluations`.
   std::size_t project(std::vector<Vec3>& next, std::size_t max_evaluations = ~std::size_t(0)) const;
@@ -56,9 +59,12 @@ class SeparationProjection {
     std::uint32_t s, t;  // the triangles
   };
   void choose_axis(Constraint& c, const CandidateAxes& axes, std::size_t lane, const std::vector<Vec3>& next) const;
+  bool is_still(const Simplex& simplex) const;
+
   const std::vector<Triangle>& triangles_;
   const std::vector<Vec3>& start_;
   double gap_;
+  std::span<const std::uint8_t> still_;
   std::vector<Constraint> constraints_;
   std::unordered_map<std::uint64_t, std::size_t> first_of_pair_;  // index of each pair's first constraint
   RigidZones zones_;

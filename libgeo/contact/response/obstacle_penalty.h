@@ -38,6 +38,8 @@ class ObstaclePenalty : public Potential {
   /// nodes, of the pressure on the surface that each carries; empty: 1.
   void find_contacts(const SurfaceWeights& weights, std::span<const Vec3> surface, double reach,
                      double slip_regularisation, std::span<const double> pressure_factor = {});
+  /// Whether the obstacle moves in this step.
+  bool moves() const { return from_.matrix() != to_.matrix(); }
   /// Whether no vertex may reach the obstacle.
   bool empty() const { return contacts_.empty(); }
 

@@ -119,14 +119,15 @@ class PenaltyAssembly {
 
 }  // namespace
 
-FreeMotion free_motion(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
-                       const std::vector<std::uint8_t>& fixed) {
+FreeMotion free_motion(const Body& body, const Solid& solid, const State& state, double dt,
+                       const Environment& environment) {
+  const std::vector<std::uint8_t>& fixed = environment.fixed;
   const std::size_t n = solid.size();
   FreeMotion free{std::vector<double>(n), state.displacement, 0};
   for (std::size_t i = 0; i < n; ++i) {
     free.inverse_mass[i] = 1 / solid.mass(NodeId(i));
     free.mean_spacing += body.nodes.spacing[i] / double(n);
-    if (fixed.empty() || !fixed[i]) free.displacement[i] += dt * state.velocity[i] + dt * dt * gravity;
+    if (fixed.empty() || !fixed[i]) free.displacement[i] += dt * state.velocity[i] + dt * dt * environment.gravity;
   }
   return free;
 }

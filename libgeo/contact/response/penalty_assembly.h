@@ -18,10 +18,10 @@ struct FreeMotion {
   double mean_spacing = 0;           ///< of nodes, model units
 };
 
-/// The free motion of a step of dt seconds that begins at `state`. `fixed`: per node, or empty;
-/// fixed nodes stay where they are.
-FreeMotion free_motion(const Body& body, const Solid& solid, const State& state, double dt, const Vec3& gravity,
-                       const std::vector<std::uint8_t>& fixed);
+/// The free motion of a step of dt seconds that begins at `state`, by the gravity of `environment`.
+/// Its fixed nodes stay where they are.
+FreeMotion free_motion(const Body& body, const Solid& solid, const State& state, double dt,
+                       const Environment& environment);
 
 /// The beginning of a step and its prediction. Refers to everything.
 struct PenaltyInput {

@@ -250,6 +250,7 @@ struct Scene {
   int checkpoint_every = 8;      ///< frames between two checkpoints
   std::vector<int> checkpoints;  ///< ascending: further frames with a checkpoint
   bool implicit = true;          ///< backward Euler; else leapfrog (symplectic Euler)
+  double sleep = 0;              ///< s: a piece that has rested for as long is not computed; 0: it always is
   std::uint64_t seed = 1;        ///< of sampling and of jitter
   std::vector<Blade> blades;
   std::vector<SceneObstacle> obstacles;

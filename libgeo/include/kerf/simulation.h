@@ -114,9 +114,16 @@ struct FrameStats {
   double phase_seconds() const;
 };
 
+/// For how long nodes have been where they are (Scene::sleep). Nodes may lack at the end.
+struct RestState {
+  std::vector<Vec3> anchor;  ///< per node: the displacement that it stays near, model units
+  std::vector<double> time;  ///< per node: s, the same for all nodes of a component of the graph
+};
+
 /// All that a run needs to continue, in addition to its body.
 struct RunState {
   State motion;
+  RestState rest;
   std::vector<std::vector<EdgeFront>> fronts;  ///< per blade: a front for each part of the edge that cuts
   FractureState fracture;
   GluedBonds glued;                       ///< walls of glued scores

@@ -38,6 +38,9 @@ struct State {
 struct Environment {
   Vec3 gravity = {0, 0, -9.81};     ///< acceleration, m/s²
   std::vector<std::uint8_t> fixed;  ///< per node: 1 clamps it; empty: no node is clamped
+  /// Per node: 1 where it sleeps. It is clamped, too, and so do all nodes of its component of the
+  /// graph, none of which an implicit step computes. Empty: no node sleeps.
+  std::vector<std::uint8_t> asleep = {};
   std::vector<Vec3> load;           ///< per node: a force, N; empty: none
   std::vector<Potential*> contact;  ///< further energies, such as contact, springs, wind; not owned
 };

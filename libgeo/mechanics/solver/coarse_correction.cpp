@@ -61,6 +61,7 @@ CoarseCorrection::BlockTiles CoarseCorrection::block_tiles(const PointBlock& blo
                                                            const PointStiffness& stiffness,
                                                            std::span<const Moduli> moduli, std::size_t stride) const {
   BlockTiles result;
+  if (stiffness.modes[b].points == 0) return result;  // all of it sleeps
   std::vector<std::uint32_t>& own = result.aggregates;
   for (const auto j : block.nodes) own.push_back(aggregates_.of[j]);
   std::sort(own.begin(), own.end());

@@ -16,7 +16,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> IncrementalPotential::coupl
 
 IncrementalPotential::IncrementalPotential(const StepProblem& problem)
     : problem_(problem),
-      contact_(problem.environment.contact, problem.start.displacement),
+      contact_(problem.environment.contact, problem.start.displacement, problem.environment.asleep),
       islands_(problem.solid.points, problem.solid.component, problem.solid.components, coupled_components()),
       elastic_(problem),
       target_(problem.solid.size()),
@@ -53,6 +53,15 @@ void IncrementalPotential::evaluate(const ActiveIslands& active, const std::vect
   contact_.add_energy(u, islands_.of_nodes(), active.mask(), contact);
   for (std::size_t p = 0; p < islands_.count(); ++p)
     if (active[p]) value[p] += elastic[p] + contact[p];
+}
+
+double IncrementalPotential::elastic_energy(const ActiveIslands& active, const std::vector<Vec3>& u) {
+  std::vector<double> energy(islands_.count(), 0);
+  elastic_.evaluate(active, u, energy, nullptr);
+  double sum = 0;
+  for (std::size_t p = 0; p < energy.size(); ++p)
+    if (active[p]) sum += energy[p];
+  return sum;
 }
 
 void IncrementalPotential::force(const ActiveIslands& active, const std::vector<Vec3>& u,

@@ -36,6 +36,8 @@ class IncrementalPotential {
   /// where given, receives the elastic response that force() and linearise() need.
   void evaluate(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& value,
                 ElasticResponse* response = nullptr);
+  /// The elastic energy of the active islands at u, J.
+  double elastic_energy(const ActiveIslands& active, const std::vector<Vec3>& u);
   /// Begins a Newton iterate where the active islands were at their last evaluate(). From the
   /// second one on, takes the bounds of friction there, and adds what this changes of E to `value`.
   void begin_iterate(const ActiveIslands& active, std::vector<double>& value) {

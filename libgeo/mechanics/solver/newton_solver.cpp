@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "mechanics/solver/fixed_nodes.h"
 
 namespace geo {
 namespace {
@@ -32,18 +33,45 @@ NewtonSolver::NewtonSolver(const StepProblem& problem, SolverCache& cache)
       contact_error_(potential_.islands().count(), 0),
       length_(potential_.islands().count(), 0),
       moved_(potential_.islands().count(), std::numeric_limits<double>::max()) {
-  direction_.step.resize(problem.solid.size());
+  direction_.step.assign(problem.solid.size(), Vec3::Zero());
   direction_.residual.resize(potential_.islands().count(), 0);
+  leave_sleepers();
+}
+
+// Islands that sleep as a whole are not computed.
+void NewtonSolver::leave_sleepers() {
+  const Islands& islands = potential_.islands();
+  std::vector<char> awake(islands.count(), 0);
+  for (std::size_t i = 0; i < problem_.solid.size(); ++i)
+    if (!is_asleep(problem_.environment, i)) awake[islands.of(i)] = 1;
+  active_.select(awake);
+}
+
+// Elastic, of the islands that sleep, J.
+double NewtonSolver::sleeping_energy(const ActiveIslands& awake) {
+  std::vector<char> asleep = awake.mask();
+  for (char& mark : asleep) mark = !mark;
+  ActiveIslands islands = awake;
+  islands.select(asleep);
+  return islands.none() ? 0 : potential_.elastic_energy(islands, at_.u);
 }
 
 bool NewtonSolver::solve(StepReport& report) {
+  const ActiveIslands awake = active_;
+  if (awake.none()) {
+    at_.u = problem_.start.displacement;
+    report.energy = sleeping_energy(awake);
+    return true;
+  }
   at_ = predict(potential_, rotation_, active_);
   trial_ = predicted_ = at_.u;
   potential_.begin_iterate(active_, at_.value);
   for (int k = 0; k < max_iterations; ++k) {
     if (!iterate(k == 0, report)) return false;
     if (active_.none()) {
-      report.energy = std::accumulate(at_.response.energy.begin(), at_.response.energy.end(), 0.0);
+      report.energy = sleeping_energy(awake);
+      for (std::size_t p = 0; p < awake.mask().size(); ++p)
+        if (awake[p]) report.energy += at_.response.energy[p];
       return true;
     }
     potential_.begin_iterate(active_, at_.value);

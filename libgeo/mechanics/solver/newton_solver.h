@@ -26,6 +26,8 @@ class NewtonSolver {
   const std::vector<Vec3>& displacement() const { return at_.u; }
 
  private:
+  void leave_sleepers();
+  double sleeping_energy(const ActiveIslands& awake);
   bool iterate(bool first, StepReport& report);
   void linearise_stale();
   void update_accuracy();

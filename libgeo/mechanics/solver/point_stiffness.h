@@ -11,7 +11,7 @@ namespace geo {
 /// ∂²Ψ/∂F² per point with negative eigenvalues left out, in the frame of the singular value
 /// decomposition of F.
 struct PointStiffness {
-  std::vector<StiffnessModes> modes;       ///< per block
+  std::vector<StiffnessModes> modes;       ///< per block; no points: all of it sleeps
   std::vector<std::vector<float>> weight;  ///< per block and point: volume, m³; zero for rigid points and padding
 };
 

@@ -44,7 +44,8 @@ SchwarzPreconditioner::SchwarzPreconditioner(const Subdomains& subdomains, const
   parallel_for(subdomains.count(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<DiagonalTerm> terms;
     for (std::size_t p = begin; p < end; ++p) {
-      if (const auto [block, point] = subdomains.point(p); block != ~0u)
+      const auto [block, point] = subdomains.point(p);
+      if (block != ~0u && input.modes[block].points > 0)  // else all of the block sleeps
         rotation_[p] = input.modes[block].rotation(point);
       diagonal_terms(p, input.blocks, input.fixed, terms);
       valid[p] = inverse_.is_valid(p, terms, moduli_of(p));

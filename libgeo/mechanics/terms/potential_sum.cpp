@@ -16,17 +16,23 @@ constexpr std::size_t terms_per_task = 64;  // smallest task worth a thread; of 
 
 }  // namespace
 
-PotentialSum::PotentialSum(std::span<Potential* const> potentials, const std::vector<Vec3>& u) : start_(u) {
+PotentialSum::PotentialSum(std::span<Potential* const> potentials, const std::vector<Vec3>& u,
+                           std::span<const std::uint8_t> asleep)
+    : start_(u), asleep_(asleep) {
   for (Potential* p : potentials)
-    for (std::size_t k = 0; k < p->size(); ++k)
-      if (const auto stencil = p->stencil(k); !stencil.empty()) {
+    for (std::size_t k = 0; k < p->size(); ++k) {
+      const auto stencil = p->stencil(k);
+      const auto awake =
+          std::find_if(stencil.begin(), stencil.end(), [&](const NodeWeight& e) { return !is_asleep(e.node); });
+      if (awake != stencil.end()) {
         if (!p->within_components()) coupling_.push_back(static_cast<std::uint32_t>(terms_.size()));
         terms_.push_back({.potential = p,
                           .index = static_cast<std::uint32_t>(k),
-                          .first_node = stencil[0].node,
+                          .first_node = awake->node,
                           .activation_distance = p->activation_distance(k)});
         stencils_.push_back(stencil);
       }
+    }
   displacement_.assign(terms_.size(), Vec3::Zero());
   force_ = displacement_;
   hessian_.assign(terms_.size(), Hessian::Zero());
@@ -45,9 +51,10 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> PotentialSum::coupled_compo
     for (std::size_t c = begin; c < end; ++c)
       for (std::size_t j = c * chunk_size; j < std::min(coupling_.size(), (c + 1) * chunk_size); ++j) {
         const Stencil stencil = stencils_[coupling_[j]];
+        const auto first = component[terms_[coupling_[j]].first_node];
         for (const auto& e : stencil)
-          if (const std::pair pair(component[stencil[0].node], component[e.node]);
-              pair.first != pair.second && (of_chunk[c].empty() || pair != of_chunk[c].back()))
+          if (const std::pair pair(first, component[e.node]);
+              !is_asleep(e.node) && pair.first != pair.second && (of_chunk[c].empty() || pair != of_chunk[c].back()))
             of_chunk[c].push_back(pair);
       }
   });

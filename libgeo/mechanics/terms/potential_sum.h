@@ -17,8 +17,9 @@ namespace geo {
 class PotentialSum {
  public:
   /// Sums all terms of `potentials`, after their begin_substep() at displacements u. Keeps
-  /// references to both.
-  PotentialSum(std::span<Potential* const> potentials, const std::vector<Vec3>& u);
+  /// references to both. `asleep`: per node, or empty; terms of sleeping nodes alone are left out.
+  PotentialSum(std::span<Potential* const> potentials, const std::vector<Vec3>& u,
+               std::span<const std::uint8_t> asleep = {});
   /// True if there are no terms.
   bool empty() const { return terms_.empty(); }
   /// Number of terms.
@@ -26,7 +27,7 @@ class PotentialSum {
   /// The stencil of a term.
   Stencil stencil(std::size_t term) const { return stencils_[term]; }
   /// Pairs of different components that a stencil couples; `component` is per node. Pairs may
-  /// repeat.
+  /// repeat. Components that sleep are coupled to none.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> coupled_components(
       std::span<const std::uint32_t> component) const;
 
@@ -76,7 +77,7 @@ class PotentialSum {
  private:
   struct Term {
     Potential* potential;
-    std::uint32_t index, first_node;  // in its potential; of its stencil
+    std::uint32_t index, first_node;  // in its potential; of its stencil, which does not sleep
     double activation_distance;
   };
   /// Terms of selected islands that are not idle.
@@ -95,7 +96,10 @@ class PotentialSum {
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
 
-  const std::vector<Vec3>& start_;  // displacements where the substep began
+  bool is_asleep(std::uint32_t node) const { return !asleep_.empty() && asleep_[node]; }
+
+  const std::vector<Vec3>& start_;        // displacements where the substep began
+  std::span<const std::uint8_t> asleep_;  // per node, or empty
   std::vector<Term> terms_;
   std::vector<Stencil> stencils_;              // per term
   std::vector<std::uint32_t> coupling_;        // terms whose stencils may span several components

@@ -405,3 +405,34 @@ TEST_CASE("triangles so near that rounding hides every separating axis become ri
   }
   CHECK(2 * bound > static_cast<std::size_t>(count));
 }
+
+TEST_CASE("what is still keeps its place where others can move instead, and nothing crosses", "[campaign]") {
+  const auto [first, count] = seeds(100);
+  int kept = 0;
+  for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Soup s;
+    s.add(make_sphere(2), {0, 0, 0}, 1);
+    const std::size_t balls = s.from.size();
+    s.add(make_block({1, 1, 1}, 0.5), {1.02, random.uniform(-1, 0.5), random.uniform(-1, 0.5)}, 1);
+    s.to = s.from;
+    const Vec3 blow = random.uniform(0, 0.3) * random.direction();
+    std::vector<std::uint8_t> still(s.from.size(), 0);
+    for (std::size_t v = 0; v < s.from.size(); ++v) {
+      still[v] = v < balls;
+      if (!still[v]) s.to[v] += blow;
+    }
+    const auto end = move_without_crossing({.triangles = s.triangles,
+                                            .representative = s.representative,
+                                            .from = s.from,
+                                            .to = s.to,
+                                            .gap = 1e-4,
+                                            .reach = 2e-3,
+                                            .still = still},
+                                           false);
+    CHECK(s.crossings(end) == 0);
+    kept += std::equal(end.begin(), end.begin() + std::ptrdiff_t(balls), s.from.begin());
+  }
+  CHECK(kept >= count * 9 / 10);  // else the fallback has moved it
+}

@@ -28,7 +28,8 @@ TEST_CASE("the free motion is inertia and gravity, and fixed nodes stay") {
   State state{std::vector<Vec3>(n, Vec3(0.1, 0, 0)), std::vector<Vec3>(n, Vec3(0, 2, 0))};
   std::vector<std::uint8_t> fixed(n, 0);
   fixed[3] = 1;
-  const FreeMotion free = free_motion(body, solid, state, 0.5, {0, 0, -8}, fixed);
+  const FreeMotion free =
+      free_motion(body, solid, state, 0.5, {.gravity = {0, 0, -8}, .fixed = fixed, .load = {}, .contact = {}});
   for (std::size_t i = 0; i < n; ++i) {
     // u + dt v + dt² g, as an implicit Euler step without forces has it.
     CHECK((free.displacement[i] - (i == 3 ? Vec3(0.1, 0, 0) : Vec3(0.1, 1, -2))).norm() < 1e-15);
@@ -50,7 +51,8 @@ TEST_CASE("sides of a closed sheet get contacts where the free motion presses th
     INFO(velocity);
     for (std::size_t i = 0; i < solid.size(); ++i)
       state.velocity[i] = {0, 0, body.nodes.position[i].z() < 0.5 ? velocity : -velocity};
-    ContactStep step = contact.begin_step(body, solid, state, 0.1, {0, 0, 0}, {});
+    ContactStep step =
+        contact.begin_step(body, solid, state, 0.1, {.gravity = Vec3::Zero(), .fixed = {}, .load = {}, .contact = {}});
     std::vector<Vec3> u = state.displacement;
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.1 * state.velocity[i];
     if (velocity < 0) {

@@ -244,7 +244,7 @@ TEST_CASE("the upper half of a cut block presses on the lower one and does not s
   ContactStats last;
   for (int step = 0; step < 40; ++step) {
     environment.contact.clear();
-    ContactStep contact_step = contact.begin_step(body, solid, state, 0.02, environment.gravity, environment.fixed);
+    ContactStep contact_step = contact.begin_step(body, solid, state, 0.02, environment);
     if (Potential* potential = contact_step.potential()) environment.contact.push_back(potential);
     solid.step_implicit(state, 0.02, environment);
     last = contact.finish_step(std::move(contact_step), solid, state.displacement);

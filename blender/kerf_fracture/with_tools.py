@@ -52,7 +52,7 @@ class Tools:
         with tempfile.TemporaryDirectory(prefix="kerf-") as folder:
             ply.write(os.path.join(folder, "model.ply"), model.vertices, model.triangles)
             more = (["--voxel", repr(voxel)] if voxel else []) + (["--smooth"] if smooth else [])
-            notes = self._run(["kerf-repair", "model.ply", *more, "-o", "solid.ply"], folder, progress)
+            notes = self._run(["kerf-repair", "model.ply", "--single", *more, "-o", "solid.ply"], folder, progress)
             vertices, faces = ply.read(os.path.join(folder, "solid.ply"))
             return vertices, faces["vertex_indices"].astype(numpy.int32), " ".join(notes)
 

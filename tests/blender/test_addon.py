@@ -163,6 +163,22 @@ def test_text():
     scenes.check_pieces(solid, 9)
 
 
+def test_text_with_bevel():
+    """Texts whose triangles cross once they are rounded to single precision: Repair mends them in the coordinates of Blender."""
+    for body, extrude, bevel in (("Kerf", 0.2, 0.03), ("Ag8&", 0.1, 0.02), ("12345", 0.3, 0.04)):
+        bpy.ops.object.text_add()
+        found = scenes.last_object("text")
+        found.data.body, found.data.extrude, found.data.bevel_depth = body, extrude, bevel
+        select(found)
+        assert bpy.ops.object.kerf_repair() == {"FINISHED"}
+        solid = bpy.data.objects["text Solid"]
+        bpy.context.view_layer.update()
+        fracture(pieces=12)
+        scenes.check_pieces(solid, 12)
+        for gone in list(bpy.data.objects):
+            bpy.data.objects.remove(gone)
+
+
 def test_nurbs():
     """A NURBS sphere, whose poles have triangles without area, is repaired and broken."""
     bpy.ops.surface.primitive_nurbs_surface_sphere_add(location=(3, 0, 1))

@@ -254,6 +254,12 @@ repairs)
   awk '/^v / { $2 += 1e6 } { print }' box.obj >far.obj
   expect 65 "far.stl: the model is too far from the origin for single precision; write a .ply" kerf-repair far.obj -o far.stl
   [ ! -e far.stl ] || fail "a partial file"
+  # Balls that overlap far from the origin cross once they are rounded: an .stl is valid as it is written.
+  kerf-model sphere --frequency 8 -o ball.ply && kerf-repair -q ball.ply -o ball.obj || fail "a ball"
+  awk -v places="0 0.6 -0.5 0.6 -0.3 -0.1 0.5 -0.1 0.1 -0.7 0.4 0.1 -0.2 0.4 -0.3" '/^v / { x[++n] = $2; y[n] = $3; z[n] = $4 } /^f / { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); f[++m] = a[1] " " b[1] " " c[1] } END { count = split(places, at, " "); for (k = 0; k < count; k += 3) for (i = 1; i <= n; ++i) printf "v %.17g %.17g %.17g\n", x[i] + at[k + 1] + 200, y[i] + at[k + 2], z[i] + at[k + 3]; for (k = 0; k < count / 3; ++k) for (j = 1; j <= m; ++j) { split(f[j], a, " "); print "f", a[1] + k * n, a[2] + k * n, a[3] + k * n } }' ball.obj >balls.obj
+  kerf-repair balls.obj -o balls.stl 2>said.txt || fail "kerf-repair of balls: $(cat said.txt)"
+  grep -q '[1-9][0-9]* pairs* of triangles that cross* in single precision divided' said.txt || fail "kerf-repair of balls says: $(cat said.txt)"
+  quietly kerf-info --check -q balls.stl
   # A scan with a hole, closed as the surface around it goes on.
   kerf-model sphere --frequency 8 -o ball.ply && kerf-repair -q ball.ply -o ball.obj || fail "a ball"
   awk '/^v / { z[++n] = $4 } /^f / { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); if (z[a[1]] > 0.7 && z[b[1]] > 0.7 && z[c[1]] > 0.7) next } { print }' ball.obj >scan.obj

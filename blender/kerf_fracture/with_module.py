@@ -75,9 +75,11 @@ class Module:
         if model.density is not None:
             wanted["density"] = arrays.carried(model.vertices, model.density, numpy.array(solid.vertices))
         wanted.update({name: list(getattr(options, name)) for name in ("axis", "impact") if getattr(options, name) is not None})
+        if options.image is not None:
+            wanted["image"] = options.image
         score = self.kerf.score(solid, options.pattern, frequency=options.bumps, progress=_span(progress, 0, end / 2), **wanted)
         notes = []
-        if score.pieces != options.pieces:
+        if score.pieces != options.pieces and options.image is None:
             notes.append(f"{score.pieces} pieces, not {options.pieces}; another seed may find them")
         if score.chips != options.chips:
             notes.append(f"{score.chips} chips, not {options.chips}; edges have room for more of a smaller size")

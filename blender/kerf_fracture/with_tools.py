@@ -10,7 +10,7 @@ import threading
 
 import numpy
 
-from . import arrays, ply
+from . import arrays, ply, png
 from .backend import Bond, Failed, Fracture, Piece, Refused, Stopped
 
 NAMES = ("kerf-score", "kerf-crack", "kerf-pieces", "kerf-repair")
@@ -68,6 +68,9 @@ class Tools:
                 arguments += [f"--{name}=" + ",".join(repr(float(x)) for x in getattr(options, name))]
         if model.density is not None:
             arguments += ["--density", "red"]
+        if options.image is not None:
+            png.write(os.path.join(folder, "image.png"), options.image)
+            arguments += ["--image", "image.png"]
         notes = self._run(
             ["kerf-score", "model.ply", *arguments, "-o", "score.front"], folder, lambda words, share: progress(words, share / 2)
         )

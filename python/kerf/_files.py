@@ -1,8 +1,6 @@
 """Files: what load() reads is decided by content."""
 import warnings
 
-import numpy
-
 from kerf import _kerf
 
 
@@ -75,6 +73,8 @@ def reconstruct(points, normals=None, colors=None, outliers=3.0, depth=0, progre
     the octree, 4 to 12; 0: by the spacing of the points. Where the surface fills regions without points, a UserWarning has
     their share of the area. Raises InputError where the points make no surface or solid, Interrupted.
     """
+    import numpy
+
     from kerf import _scan
     if colors is not None:
         colors = numpy.asarray(colors)

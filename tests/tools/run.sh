@@ -129,6 +129,8 @@ contract)
   expect 2 "writes a folder, .glb or .usda, not .fbx" kerf-pieces block.ply -o x.fbx
   expect 2 "writes a folder, not .mp4" kerf-sim scene.toml -o x.mp4
   expect 2 "writes .pcd or .ply, not .xyz" kerf-sample block.ply -o x.xyz
+  printf '#usda 1.0\n' >stage.usda
+  expect 65 "stage.usda: is a USD file, which is not read here; save it as glTF" kerf-crack stage.usda --jagged 0.1 -o x.ply
   expect 2 "writes .kerf, not .ply" kerf-update ok.kerf --surface block.ply -o x.ply
   quietly kerf-crack block.ply --front ok.front -o cut.2 && quietly kerf-info -q cut.2 && rm cut.2
   # A front that misses the model is told of, with where both are; a sheet, too. What has been done, with -v.

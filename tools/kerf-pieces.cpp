@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 
 #include <kerf/error.h>
 #include <kerf/export.h>
 #include <kerf/files.h>
 #include <kerf/hierarchy.h>
+#include <kerf/parallel.h>
 #include <kerf/pieces.h>
 #include "pieces/subject.h"
 #include "tool.h"
@@ -170,6 +172,20 @@ void write(const std::string& path, const Command& w, const std::vector<geo::Chu
   geo::write_all(w.bonds, [&](std::ostream& out) { geo::write_bonds(out, set.chunks, set.bonds, set.labels); });
 }
 
+// Says which pieces cross themselves in the coordinates of a .glb.
+void say_crossings(const tool::Tool& t, const std::vector<geo::Chunk>& chunks) {
+  std::vector<std::size_t> pairs(chunks.size());
+  geo::parallel_for(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) pairs[p] = geo::crossings_in_single_precision(chunks[p]);
+  });
+  const auto pieces = chunks.size() - static_cast<std::size_t>(std::count(pairs.begin(), pairs.end(), 0u));
+  if (pieces == 0) return;
+  const auto all = std::accumulate(pairs.begin(), pairs.end(), std::size_t(0));
+  t.say("kerf-pieces: " + t.output_path + ": " + tool::counted(all, "pair") +
+        " of triangles cross in single precision, in " + tool::counted(pieces, "piece") +
+        "; a folder of .ply has double precision");
+}
+
 // Says what is not as in the model: a unit that is assumed, an offset, what the format does not
 // hold.
 void say_assumptions(const tool::Tool& t, const Command& w, const std::vector<geo::Chunk>& chunks) {
@@ -185,6 +201,7 @@ void say_assumptions(const tool::Tool& t, const Command& w, const std::vector<ge
   if (!offset.isZero(0))
     t.say("kerf-pieces: " + path + ": the model is far from the origin; the root node moves the pieces by (" +
           tool::rounded(offset) + "); without that, pieces fit in single precision");
+  if (glb) say_crossings(t, set.chunks);
 }
 
 // Reports in words or as JSON.

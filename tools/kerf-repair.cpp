@@ -17,7 +17,7 @@ namespace {
 struct Command {
   std::string model;
   double weld = 0, voxel = 0, edge = 0, unit = 0;
-  bool smooth = false;
+  bool smooth = false, single = false;
   std::string inner = "oriented", open = "auto";
   scan::Options scan;
 };
@@ -26,6 +26,7 @@ struct Outcome {
   std::optional<scan::Stats> scan;
   geo::SolidRepairStats solid;
   geo::OpenSheetStats sheets;  // with --voxel
+  geo::RoundingStats rounding;
 };
 
 geo::InnerShells inner_of(const Command& w) {
@@ -84,6 +85,9 @@ std::string in_words(const Outcome& done, const Command& w) {
   if (done.sheets.sheets > 0)
     add(tool::counted(done.sheets.sheets, "open sheet") + " made " + (done.sheets.sheets == 1 ? "a plate" : "plates") +
         " one voxel thick (--open closed closes holes instead)");
+  if (done.rounding.rounds > 0)
+    add(tool::counted(done.rounding.crossings, "pair") + " of triangles that " +
+        (done.rounding.crossings == 1 ? "crosses" : "cross") + " in single precision divided");
   if (w.voxel > 0 && w.open == "auto" && done.solid.repair.filled_holes > 0) add("(--open sheets leaves holes open)");
   return text.empty() ? "nothing to mend" : text;
 }
@@ -108,6 +112,7 @@ std::string figures(const Outcome& done, const geo::TriangleMesh& mesh) {
   count("sheets", done.sheets.sheets);
   count("united", done.solid.united ? done.solid.united->cells : 0);
   count("inside", done.solid.united ? done.solid.united->removed_faces : 0);
+  count("rounded", done.rounding.crossings);
   count("vertices", mesh.vertices.size());
   count("faces", mesh.triangles.size());
   add("volume", tool::number(geo::signed_volume(mesh)));
@@ -167,6 +172,7 @@ geo::TriangleMesh solid_of(const Command& w, geo::TriangleMesh mesh, double diag
       mesh = geo::refined(mesh, w.edge * diagonal);
       geo::require_solid(mesh);
     }
+    if (w.single) mesh = geo::rounded_solid(mesh, &done.rounding);
   } catch (const std::runtime_error& e) {
     const std::string what = e.what();
     throw tool::Failure(w.model + ": " + what.substr(0, what.rfind("; ")) +
@@ -201,6 +207,7 @@ int main(int argc, char** argv) {
   t.choice("--open", w.open, {"auto", "closed", "sheets"},
            "With --voxel, parts with open edges: plates where closing them takes half their area; closed; plates");
   t.option("--edge", w.edge, "At last, divide edges longer than this fraction of the diagonal; 0: none");
+  t.flag("--single", w.single, "Coordinates in single precision, valid as such; always for an .stl");
   t.option("--outliers", w.scan.outliers,
            "Of a scan: leave out points whose neighbours are farther than the mean by this many standard deviations; "
            "0: none");
@@ -226,6 +233,7 @@ int main(int argc, char** argv) {
       throw geo::InputError(w.model + ": is cut, and sound as it is; give the model before the cut");
     require_triangles(w.model, mesh);
     const double diagonal = geo::bounding_box(mesh).diagonal();
+    w.single = w.single || target.ends_with(".stl");
     mesh = solid_of(w, std::move(mesh), diagonal, done);
     tool::write_surface(mesh, {}, target, t);
     if (t.json)

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include <kerf/files.h>
+#include <kerf/pieces.h>
 #include <kerf/score.h>
 #include "model.h"
 #include "score/png_file.h"
@@ -151,6 +152,14 @@ void say_missing(const Command& w, const geo::ScoreOptions& options, const geo::
           "; edges have room for more of a smaller --chip-size");
 }
 
+// Why a score of the model has no walls.
+std::string why_no_walls(const geo::Complex& complex) {
+  const auto parts = geo::find_pieces(complex).count;
+  if (parts == 1) return "the pattern does not meet the model; ask for more pieces";
+  return "consists of " + std::to_string(parts) +
+         " parts that do not touch, which are pieces already; ask for more than that";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -215,7 +224,7 @@ int main(int argc, char** argv) {
     } catch (const geo::GeometryError& e) {
       throw geo::GeometryError(w.model + ": " + e.what());
     }
-    if (score.sheet.triangles.empty()) throw tool::Failure("the pattern does not meet the model; ask for more pieces");
+    if (score.sheet.triangles.empty()) throw tool::Failure(w.model + ": " + why_no_walls(complex));
     const std::size_t triangles = score.sheet.triangles.size();
     const geo::Front front{.name = w.pattern,
                            .closed = false,

@@ -17,6 +17,8 @@ inline Kind kind_of(const std::string& bytes, const std::string& name) {
     return bytes.compare(at, std::string(word).size(), word) == 0;
   };
   const std::string header = bytes.substr(0, 4096);
+  // A binary file of another program, whose bytes may look like any line.
+  if (!begins("ply") && !begins("# .PCD") && header.find('\0') != std::string::npos) return Kind::surface;
   if (begins("# .PCD") || begins("VERSION") || begins("FIELDS"))
     return header.find("radius") != std::string::npos ? Kind::nodes : Kind::surface;
   if (begins("ply")) {

@@ -68,7 +68,9 @@ inline void repair_plain(geo::TriangleMesh& mesh, const std::string& path, const
   try {
     mesh = geo::repaired_solid(std::move(mesh), {}, &done);
   } catch (const std::runtime_error& e) {
-    throw geo::InputError(path + ": cannot be repaired: " + e.what());
+    const std::string what = e.what();
+    throw geo::InputError(path + ": cannot be repaired: " + what.substr(0, what.rfind("; ")) +
+                          "; wrap it in a new surface first: kerf-repair --voxel 0.005");
   }
   if (const std::string decisions = shell_decisions(done.repair); !decisions.empty())
     say(path + ": " + decisions + "; kerf-repair with that option, instead of --repair, decides otherwise");

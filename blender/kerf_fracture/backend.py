@@ -46,6 +46,7 @@ class Options:
     seed: int = 1
     axis: typing.Optional[tuple] = None  # none: the pattern's own default
     impact: typing.Optional[tuple] = None
+    image: typing.Optional[numpy.ndarray] = None  # (height, width) brightness from 0 to 1, the highest row first; of the pattern curves
     cluster: float = 0.15
     grain: float = 5.0
     tile: float = 0.25  # one unit of the inner faces' texture coordinates

@@ -60,6 +60,11 @@ class Work:
         except backend.Failed as error:
             self.report({"ERROR"}, f"{error}.")
             return False
+        try:
+            self._image = self.image_for_reading()
+        except backend.Refused as error:
+            self.report({"ERROR"}, f"{error}.")
+            return False
         depsgraph = context.evaluated_depsgraph_get()
         sources = []
         for found in context.selected_objects:
@@ -80,6 +85,10 @@ class Work:
     def density_group_for_reading(self):
         """The vertex group whose weights are read."""
         return ""
+
+    def image_for_reading(self):
+        """The brightness of the image that is cut out, None without one. Throws Refused."""
+        return None
 
     def execute(self, context):
         if not self.prepare(context):
@@ -156,6 +165,9 @@ class Patterned(settings.Settings, Work):
     def density_group_for_reading(self):
         return self.density_group if self.pattern in {"voronoi", "wood"} else ""
 
+    def image_for_reading(self):
+        return source.brightness(self.image) if self.pattern == "curves" else None
+
     def fracture_options(self, own, cursor):
         """The backend's options for one object."""
         impact = axis = None
@@ -165,7 +177,7 @@ class Patterned(settings.Settings, Work):
             unit = mathutils.Vector([float(name == self.axis) for name in "XYZ"])
             axis = tuple((own.frame.to_3x3().inverted() @ (own.object.matrix_world.to_3x3() @ unit)).normalized())
         return backend.Options(
-            pattern=self.pattern, pieces=self.pieces, jagged=self.jagged, bumps=self.bumps, seed=self.seed, axis=axis, impact=impact,
+            pattern=self.pattern, pieces=self.pieces, jagged=self.jagged, bumps=self.bumps, seed=self.seed, axis=axis, impact=impact, image=self._image,
             edge_detail=self.edge_detail, chips=self.chips, chip_size=self.chip_size,
             cluster=self.cluster, grain=self.grain, tile=self.tile, hulls=self.hulls, corners=self.corners,
         )

@@ -11,6 +11,7 @@ PATTERNS = [
     ("glass", "Glass", "Radial cracks and rings, closer together near the middle"),
     ("wood", "Wood", "Long cells along the grain"),
     ("bricks", "Bricks", "Courses, each shifted by half a brick"),
+    ("curves", "Image", "The borders of an image's black areas, swept along the axis"),
 ]
 AXES = [("AUTO", "Automatic", "The longest extent; the shortest for Radial and Glass")] + [
     (axis, axis, f"The object's {axis} axis") for axis in "XYZ"
@@ -51,6 +52,7 @@ class Settings:
     density_group: StringProperty(
         name="Density Group", description="Cells and Wood: vertex group with high weights where pieces are to be small. Empty: pieces are alike everywhere"
     )
+    image: StringProperty(name="Image", description="Image: of this file's images, the one whose black areas are cut out")
     grain: FloatProperty(name="Grain", default=5, min=1, max=100, description="Wood: how many times longer than thick pieces are")
     inner_material: StringProperty(
         name="Inner Material", description="Material of inner faces, in a slot of its own; made when it is not there. Empty: Kerf Inner"
@@ -98,7 +100,9 @@ def draw(layout, settings, column=True):
     if settings.chips:
         block.prop(settings, "chip_size")
     block = layout.column(align=True)
-    if settings.pattern in {"planes", "wood", "bricks", "radial", "glass"}:
+    if settings.pattern == "curves":
+        block.prop_search(settings, "image", bpy.data, "images")
+    if settings.pattern in {"planes", "wood", "bricks", "radial", "glass", "curves"}:
         block.prop(settings, "axis")
     if settings.pattern == "wood":
         block.prop(settings, "grain")

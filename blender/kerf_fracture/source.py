@@ -2,6 +2,7 @@
 
 import dataclasses
 
+import bpy
 import mathutils
 import numpy
 
@@ -66,6 +67,20 @@ def read(found, depsgraph, density_group=""):
         return own
     finally:
         evaluated.to_mesh_clear()
+
+
+def brightness(name):
+    """An image as (height, width) values from 0 to 1, the highest row first; what is transparent is white. Throws Refused."""
+    found = bpy.data.images.get(name)
+    if found is None:
+        raise Refused(f"there is no image '{name}'; open one in the image editor, and choose it" if name else "the pattern Image needs one; choose it")
+    width, height = found.size
+    if width == 0 or height == 0:
+        raise Refused(f"the image '{name}' has no pixels; find its file in the image editor")
+    pixels = numpy.empty(4 * width * height, numpy.float32)
+    found.pixels.foreach_get(pixels)
+    color, alpha = pixels.reshape(height, width, 4)[::-1, :, :3], pixels.reshape(height, width, 4)[::-1, :, 3]
+    return numpy.clip(color.mean(2) * alpha + 1 - alpha, 0, 1).astype(float)
 
 
 def _weights(found, mesh, name):

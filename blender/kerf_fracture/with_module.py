@@ -50,18 +50,22 @@ class Module:
             mesh = self.kerf.Mesh(*arrays.welded(model.vertices, model.triangles))
             progress("repair", 0.0)
             mended, stats = mesh.repair(smooth=smooth)
-            words = _words(stats)
+            words = [_words(stats)] if stats else []
             if voxel:
                 size = numpy.linalg.norm(numpy.ptp(numpy.array(mesh.vertices), axis=0))
                 mended = self.kerf.Solid.repaired(mesh, smooth=smooth, voxel=voxel * size)
-                words = f"wrapped in {len(mended.faces)} triangles"
+                words = [f"wrapped in {len(mended.faces)} triangles"]
             elif not mended.check().good:
                 mended = mended.self_union()
-                words += "; crossing triangles cut, parts united"
-            self.kerf.Solid(mended)  # refuses what is still none
+                words.append("crossing triangles cut, parts united")
+            solid = self.kerf.Solid(mended)  # refuses what is still none
+            rounded = solid.rounded()  # a mesh of Blender holds no more
+            if not numpy.array_equal(rounded.faces, solid.faces):
+                words.append("triangles divided that cross in single precision")
+            mended = rounded
             if not progress("repair", 1.0):
                 raise Stopped()
-            return numpy.array(mended.vertices), numpy.array(mended.faces, numpy.int32), words
+            return numpy.array(mended.vertices), numpy.array(mended.faces, numpy.int32), "; ".join(words) or "nothing to repair"
 
     def _crack(self, model, options, progress, end):
         """The cut complex, and sentences for the user."""
@@ -71,9 +75,11 @@ class Module:
         if model.density is not None:
             wanted["density"] = arrays.carried(model.vertices, model.density, numpy.array(solid.vertices))
         wanted.update({name: list(getattr(options, name)) for name in ("axis", "impact") if getattr(options, name) is not None})
+        if options.image is not None:
+            wanted["image"] = options.image
         score = self.kerf.score(solid, options.pattern, frequency=options.bumps, progress=_span(progress, 0, end / 2), **wanted)
         notes = []
-        if score.pieces != options.pieces:
+        if score.pieces != options.pieces and options.image is None:
             notes.append(f"{score.pieces} pieces, not {options.pieces}; another seed may find them")
         if score.chips != options.chips:
             notes.append(f"{score.chips} chips, not {options.chips}; edges have room for more of a smaller size")
@@ -111,7 +117,7 @@ def _words(stats):
         (stats.added_triangles, "triangle added", "triangles added"),
         (stats.dropped_shells, "shell dropped", "shells dropped"),
     ]
-    return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts if count) or "nothing to repair"
+    return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts if count)
 
 
 def _span(progress, begin, end):

@@ -10,7 +10,7 @@ import threading
 
 import numpy
 
-from . import arrays, ply
+from . import arrays, ply, png
 from .backend import Bond, Failed, Fracture, Piece, Refused, Stopped
 
 NAMES = ("kerf-score", "kerf-crack", "kerf-pieces", "kerf-repair")
@@ -52,7 +52,7 @@ class Tools:
         with tempfile.TemporaryDirectory(prefix="kerf-") as folder:
             ply.write(os.path.join(folder, "model.ply"), model.vertices, model.triangles)
             more = (["--voxel", repr(voxel)] if voxel else []) + (["--smooth"] if smooth else [])
-            notes = self._run(["kerf-repair", "model.ply", *more, "-o", "solid.ply"], folder, progress)
+            notes = self._run(["kerf-repair", "model.ply", "--single", *more, "-o", "solid.ply"], folder, progress)
             vertices, faces = ply.read(os.path.join(folder, "solid.ply"))
             return vertices, faces["vertex_indices"].astype(numpy.int32), " ".join(notes)
 
@@ -68,6 +68,9 @@ class Tools:
                 arguments += [f"--{name}=" + ",".join(repr(float(x)) for x in getattr(options, name))]
         if model.density is not None:
             arguments += ["--density", "red"]
+        if options.image is not None:
+            png.write(os.path.join(folder, "image.png"), options.image)
+            arguments += ["--image", "image.png"]
         notes = self._run(
             ["kerf-score", "model.ply", *arguments, "-o", "score.front"], folder, lambda words, share: progress(words, share / 2)
         )

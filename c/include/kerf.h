@@ -165,7 +165,8 @@ typedef enum kerf_pattern {
   KERF_RADIAL = 3,
   KERF_GLASS = 4,
   KERF_WOOD = 5,
-  KERF_BRICKS = 6
+  KERF_BRICKS = 6,
+  KERF_CURVES = 7 /* the borders of the black areas of `image`, swept along `axis` */
 } kerf_pattern;
 
 /* kerf_score_defaults() sets all of it. Lengths are fractions of the model's diagonal. */
@@ -188,6 +189,8 @@ typedef struct kerf_score_options {
   double edge_width;            /* their depth, of the diagonal */
   const double* density;        /* where cells are many: a value of at least 0 for each vertex; or null */
   size_t density_length;
+  const uint8_t* image; /* brightness, rows from above, `image_width` bytes each; or null: none */
+  int32_t image_width, image_height;
 } kerf_score_options;
 KERF_API kerf_status kerf_score_defaults(kerf_score_options* options);
 /* The walls of a pattern as a sheet for kerf_complex_insert(). `options` may be null. `pieces`

@@ -94,12 +94,29 @@ geo::Density density_of(const kerf_score_options& o, const geo::TriangleMesh& mo
   return geo::painted_density(model, {o.density, o.density_length});
 }
 
+// The outlines of the black areas of an image in the middle of a model.
+void add_image(const kerf_score_options& o, const geo::TriangleMesh& model, geo::ScoreOptions& options) {
+  constexpr int widest = 65536;
+  if ((o.pattern == KERF_CURVES) != (o.image != nullptr))
+    throw ArgumentError("image: goes with the pattern KERF_CURVES, which needs one");
+  if (!o.image) return;
+  geo::GrayImage image{.width = static_cast<int>(number_of(o.image_width, 1, widest, "image_width")),
+                       .height = static_cast<int>(number_of(o.image_height, 1, widest, "image_height")),
+                       .brightness = {}};
+  const auto pixels = std::size_t(image.width) * std::size_t(image.height);
+  constexpr float white = 255;
+  for (std::size_t i = 0; i < pixels; ++i) image.brightness.push_back(float(o.image[i]) / white);
+  geo::CutOutOptions cut;
+  if (options.pattern.axis) cut.axis = *options.pattern.axis;
+  options.pattern.curves = geo::cut_out(image, geo::bounding_box(model), cut).curves;
+}
+
 geo::ScoreOptions score_options_of(const kerf_score_options* given, const geo::TriangleMesh& model) {
   kerf_score_options o;
   kerf_score_defaults(&o);
   if (given) o = *given;
   geo::ScoreOptions options;
-  number_of(o.pattern, KERF_PLANES, KERF_BRICKS, "pattern");
+  number_of(o.pattern, KERF_PLANES, KERF_CURVES, "pattern");
   options.pattern.pattern = static_cast<geo::Pattern>(o.pattern);
   options.pieces = static_cast<int>(number_of(o.pieces, 1, 1000000, "pieces"));
   options.pattern.seed = options.jagged.seed = o.seed;
@@ -116,6 +133,7 @@ geo::ScoreOptions score_options_of(const kerf_score_options* given, const geo::T
   options.jagged.edge_amplitude = number_of(o.edge_detail, 0, 1, "edge_detail");
   options.jagged.edge_width = number_of(o.edge_width, 1e-3, 1, "edge_width");
   options.pattern.density = density_of(o, model);
+  add_image(o, model, options);
   return options;
 }
 

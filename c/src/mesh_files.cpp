@@ -3,14 +3,22 @@
 #include <sstream>
 
 #include "call.h"
+#include "kerf/check.h"
 #include "kerf/export.h"
 #include "kerf/files.h"
 #include "kerf/jobs.h"
 #include "kerf/pieces.h"
+#include "kerf/repair.h"
 #include "objects.h"
 
 namespace kerf_c {
 namespace {
+
+// A solid is written so that it is one in single precision.
+void write_rounded_stl(std::ostream& out, const geo::TriangleMesh& mesh) {
+  const bool solid = !mesh.two_sided() && geo::check_surface(mesh, geo::SelfIntersections::find).good();
+  geo::write_stl(out, solid ? geo::rounded_solid(mesh) : mesh);
+}
 
 geo::TriangleMesh plain(geo::SurfaceFile file) { return std::move(file.mesh); }
 
@@ -29,7 +37,7 @@ using Writer = std::function<void(std::ostream&)>;
 Writer writer_of(const geo::TriangleMesh& mesh, const std::string& format) {
   if (format == "ply") return [&](std::ostream& out) { geo::write_ply(out, mesh); };
   if (format == "obj") return [&](std::ostream& out) { geo::write_obj(out, mesh); };
-  if (format == "stl") return [&](std::ostream& out) { geo::write_stl(out, mesh); };
+  if (format == "stl") return [&](std::ostream& out) { write_rounded_stl(out, mesh); };
   if (format == "off") return [&](std::ostream& out) { geo::write_off(out, mesh); };
   if (format == "glb") return [&](std::ostream& out) { write_mesh_glb(out, mesh); };
   return {};

@@ -1,6 +1,8 @@
-// in_metres() and single_precision_offset() of kerf/export.h.
+// in_metres() of kerf/export.h, and what single precision does to pieces.
 #include <cmath>
 
+#include "base/single_precision.h"
+#include "kerf/contact.h"
 #include "kerf/export.h"
 
 namespace geo {
@@ -13,14 +15,6 @@ std::vector<Bond> scaled(std::vector<Bond> bonds, double unit) {
     bond.centroid *= unit;
   }
   return bonds;
-}
-
-// The nearest number in single precision. gcc 12 leaves out a cast to float and back in vectors.
-double to_single(double x) {
-  constexpr int digits = 24;  // binary ones of a float
-  int exponent = 0;
-  const double fraction = std::frexp(x, &exponent);
-  return std::ldexp(std::nearbyint(std::ldexp(fraction, digits)), exponent - digits);
 }
 
 }  // namespace
@@ -42,6 +36,16 @@ PieceSet in_metres(const std::vector<Chunk>& chunks, const std::vector<Bond>& bo
     level.bonds = scaled(std::move(level.bonds), unit);
   }
   return set;
+}
+
+std::size_t crossings_in_single_precision(const Chunk& chunk) {
+  TriangleMesh mesh;
+  mesh.triangles = chunk.mesh.triangles;
+  mesh.patch = chunk.mesh.patch;
+  mesh.site = chunk.mesh.site;
+  for (const Vec3& p : chunk.mesh.vertices)
+    for (double& x : mesh.vertices.emplace_back(p - chunk.centroid)) x = to_single(x);
+  return count_crossings(mesh);
 }
 
 Vec3 single_precision_offset(const Box3& box) {

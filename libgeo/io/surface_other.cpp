@@ -92,7 +92,7 @@ OtherFormat other_format(const std::string& bytes, const std::string& name) {
 }
 
 SurfaceFile parse_other(const std::string& bytes, const std::string& name, const OtherFormat& format) {
-  const std::string save = "; save it as PLY, OBJ, STL or OFF";
+  const std::string save = "; save it as glTF, PLY, OBJ, STL or OFF";
   if (format.ending.empty()) throw InputError(name + ": is " + format.what + ", which is not read here" + save);
   if (format.ending == "glb" || format.ending == "gltf") return parse_gltf(bytes, name);
   return parse_by_assimp(bytes, name, format);

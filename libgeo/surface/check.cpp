@@ -11,6 +11,7 @@
 #include "geometry/box_pairs.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
+#include "surface/crossing_triangles.h"
 #include "surface/radial_edge.h"
 #include "surface/shells.h"
 #include "surface/skin.h"
@@ -102,7 +103,14 @@ std::size_t count_degenerate(const TriangleMesh& mesh, SurfaceReport& report) {
   return count;
 }
 
-// Pairs (i > j) of triangles that cross, ascending; without triangles that have a vertex twice.
+// Reports shells whose orientation does not fit their place. The surface is sound otherwise.
+void check_shells(const TriangleMesh& mesh, SurfaceReport& report) {
+  report.shells = find_shells(mesh);
+  if (const std::string problem = shell_problem(report.shells); !problem.empty()) report_problem(report, problem);
+}
+
+}  // namespace
+
 std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_triangles(const TriangleMesh& mesh) {
   const auto points = [&](std::uint32_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -123,14 +131,6 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_triangles(const Tr
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
-
-// Reports shells whose orientation does not fit their place. The surface is sound otherwise.
-void check_shells(const TriangleMesh& mesh, SurfaceReport& report) {
-  report.shells = find_shells(mesh);
-  if (const std::string problem = shell_problem(report.shells); !problem.empty()) report_problem(report, problem);
-}
-
-}  // namespace
 
 bool faces_cross(const std::array<std::uint32_t, 3>& f, const std::array<Vec3, 3>& p,
                  const std::array<std::uint32_t, 3>& g, const std::array<Vec3, 3>& q) {

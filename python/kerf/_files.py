@@ -73,10 +73,15 @@ def reconstruct(points, normals=None, colors=None, outliers=3.0, depth=0, progre
     the octree, 4 to 12; 0: by the spacing of the points. Where the surface fills regions without points, a UserWarning has
     their share of the area. Raises InputError where the points make no surface or solid, Interrupted.
     """
+    import numpy
+
     from kerf import _scan
-    kind = getattr(getattr(colors, "dtype", None), "kind", "f")
-    if colors is not None and kind in "iu":
-        colors = colors / 255
+    if colors is not None:
+        colors = numpy.asarray(colors)
+        if colors.dtype.kind in "iu":
+            colors = colors / 255
+        if colors.size and colors.dtype.kind == "f" and not (colors.min() >= 0 and colors.max() <= 1):
+            raise _kerf.InputError("reconstruct: colors: a value outside 0 to 1; give floats from 0 to 1, or integers up to 255")
     mesh, regions, share = _scan.reconstruct(points, normals, colors, outliers, depth, progress)
     if regions:
         warnings.warn(f"reconstruct: {regions} region{'s' if regions > 1 else ''} without points filled, {100 * share:.2g} % of the area",

@@ -10,14 +10,51 @@ def _require_mesh(of, method):
 
 
 def to_trimesh(self):
-    """The mesh as a trimesh.Trimesh, with the arguments of to_trimesh_kwargs(). Raises kerf.Error without the package trimesh."""
+    """The mesh as a trimesh.Trimesh, with the arguments of to_trimesh_kwargs(), texture coordinates, materials and colours.
+
+    trimesh keeps texture coordinates and colours at vertices: these are divided along seams, where corners differ. Materials are
+    base colours with their images, which need the package PIL. Raises kerf.Error without the package trimesh.
+    """
     _require_mesh(self, "to_trimesh")
     try:
         import trimesh
     except ImportError as error:
         raise _kerf.Error("to_trimesh: the package trimesh is not installed") from error
 
-    return trimesh.Trimesh(**self.to_trimesh_kwargs())
+    import numpy as np
+
+    given = self.to_trimesh_kwargs()
+    if self.uv is None and self.colors is None:
+        return trimesh.Trimesh(**given)
+    values = np.concatenate([part.reshape(3 * len(self.faces), -1) for part in (self.uv, self.colors) if part is not None], axis=1)
+    corners = np.concatenate([self.faces.reshape(-1, 1), values], axis=1)
+    _, first, vertex = np.unique(corners, axis=0, return_index=True, return_inverse=True)
+    given["vertices"] = self.vertices[self.faces.reshape(-1)[first]]
+    given["faces"] = vertex.reshape(-1, 3)
+    colors = None if self.colors is None else np.round(255 * values[first, -4:]).astype(np.uint8)
+    if self.uv is None:
+        return trimesh.Trimesh(vertex_colors=colors, **given)
+    if colors is not None:
+        given["vertex_attributes"] = {"color": colors}
+    return trimesh.Trimesh(visual=_textures(self, trimesh, values[first, :2]), **given)
+
+
+def _textures(mesh, trimesh, uv):
+    """Texture coordinates with the materials of the groups."""
+    import io
+
+    try:
+        from PIL import Image
+    except ImportError:
+        Image = None
+    names = mesh.group_names or ("skin",)
+    made = []
+    for name, (factor, image) in zip(names, mesh._base_colors()):
+        picture = Image.open(io.BytesIO(image)) if image and Image else None
+        made.append(trimesh.visual.material.PBRMaterial(name=name, baseColorFactor=list(factor), baseColorTexture=picture))
+    if len(made) == 1:
+        return trimesh.visual.TextureVisuals(uv=uv, material=made[0])
+    return trimesh.visual.TextureVisuals(uv=uv, material=trimesh.visual.material.MultiMaterial(made), face_materials=mesh.groups)
 
 
 def _of_vertices(mesh, corners):

@@ -69,6 +69,7 @@ void run_in_thread(const geo::Progress& progress, const std::string& phase,
                    std::function<void(const geo::Progress&)> work) {
   const auto shared = std::make_shared<Apart>();
   shared->phase = phase;
+  geo::report(progress, phase, 0, 1);
   end_with_threads_at_exit();
   ++threads;
   std::thread(run, shared, std::move(work)).detach();
@@ -85,6 +86,7 @@ void run_in_thread(const geo::Progress& progress, const std::string& phase,
     throw geo::Interrupted();
   }
   if (shared->error) std::rethrow_exception(shared->error);
+  geo::report(progress, shared->phase, shared->done, shared->total);
 }
 
 void wait_for_threads_at_exit() { py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_threads)); }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "kerf/progress.h"
+#include "progress.h"
 
 namespace kerf_python {
 
@@ -38,6 +39,14 @@ auto run_apart(const geo::Progress& progress, const std::string& phase, Work wor
   run_in_thread(progress, phase,
                 [result, work = std::move(work)](const geo::Progress& own) { result->emplace(work(own)); });
   return std::move(**result);
+}
+
+/// Runs `work`, which takes a geo::Progress of its own, as run_apart(): `progress` or Ctrl-C ends
+/// the call at once. `work` holds what it needs, and nothing of Python. To be called with the GIL.
+template <class Work>
+auto stoppable(const std::string& phase, Work work, py::object progress = py::none()) {
+  ProgressReport report(std::move(progress));
+  return report.run([&](const geo::Progress& tell) { return run_apart(tell, phase, std::move(work)); });
 }
 
 /// Registers a function that runs before the interpreter ends: it waits a moment for threads that

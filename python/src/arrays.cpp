@@ -11,6 +11,11 @@
 namespace kerf_python {
 namespace {
 
+// Whether an object has this attribute, and it is True, as tensors of torch have.
+bool is_true(py::handle object, const char* attribute) {
+  return py::hasattr(object, attribute) && object.attr(attribute).ptr() == Py_True;
+}
+
 // The object as an array of numbers; integers only where `integers`.
 py::array array_from(py::handle object, const std::string& name, bool integers) {
   const char* wanted = integers ? "an array of integers" : "an array of numbers";
@@ -22,6 +27,9 @@ py::array array_from(py::handle object, const std::string& name, bool integers) 
   }
   if (!array) {
     PyErr_Clear();
+    if (is_true(object, "requires_grad"))
+      throw geo::InputError(name + ": a tensor that requires a gradient; give its detach().cpu()");
+    if (is_true(object, "is_cuda")) throw geo::InputError(name + ": a tensor of a GPU; give its cpu()");
     throw geo::InputError(name + ": not " + wanted + "; give one");
   }
   const char kind = array.dtype().kind();

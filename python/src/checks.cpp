@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "apart.h"
 #include "bind.h"
 #include "complex.h"
 #include "kerf/contact.h"
@@ -88,8 +89,10 @@ void add_to_classes(py::module_& module) {
   py::class_<Mesh, std::shared_ptr<Mesh>>(module.attr("Mesh"))
       .def(
           "check",
-          [](const Mesh& self, bool crossings) {
-            return without_gil([&] { return geo::check_surface(self.mesh, tested(crossings)); });
+          [](const std::shared_ptr<Mesh>& self, bool crossings) {
+            return stoppable("check", [self, how = tested(crossings)](const geo::Progress&) {
+              return geo::check_surface(self->mesh, how);
+            });
           },
           py::arg("self_intersections") = true,
           "Checks that the mesh is closed, manifold, oriented and without degenerate or intersecting triangles; "
@@ -97,7 +100,10 @@ void add_to_classes(py::module_& module) {
           "A two-sided surface is checked as a crack complex. Returns a SurfaceReport.")
       .def(
           "crossings",
-          [](const Mesh& self) { return without_gil([&] { return geo::count_crossings(countable(self)); }); },
+          [](const std::shared_ptr<Mesh>& self) {
+            return stoppable("crossings",
+                             [self](const geo::Progress&) { return geo::count_crossings(countable(*self)); });
+          },
           "Number of pairs of triangles that cross: have a common point other than shared vertices and edges. On a\n"
           "two-sided surface, copies of a site at one place count as one vertex. Exact. Raises InputError where a\n"
           "triangle has a vertex twice.");

@@ -88,6 +88,8 @@ class ModelReading {
   ModelReading(py::handle object, const std::string& name);
   /// The complex; valid while this object lives.
   const geo::Complex& complex() const { return cut_ ? cut_->complex : *uncut_; }
+  /// The complex of a model without cracks, which never changes; null where a Complex was given.
+  const std::shared_ptr<const geo::Complex>& uncut() const { return uncut_; }
 
  private:
   std::shared_ptr<Complex> cut_;

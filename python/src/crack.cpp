@@ -1,6 +1,7 @@
 // Cracks given whole: sheets, scores and fronts with all their steps.
 #include <pybind11/stl.h>
 
+#include "apart.h"
 #include "bind.h"
 #include "fronts.h"
 #include "kerf/error.h"
@@ -14,17 +15,22 @@ namespace {
 
 using Shared = std::shared_ptr<Complex>;
 
-std::shared_ptr<Delta> insert(Complex& self, const geo::TriangleMesh& sheet, const geo::CrackOptions& options,
-                              ProgressReport& progress) {
-  geo::CrackStats work;
-  const Writing writing(self.busy);
-  const auto crack = self.next_crack();
-  auto delta = self.edit_held({}, true, [&] {
+// Whether others hold the complex that a call cuts. One that they do not may be left to a thread.
+enum class Held { alone, by_others };
+
+std::shared_ptr<Delta> insert(const Shared& self, const std::shared_ptr<Mesh>& sheet, const geo::CrackOptions& options,
+                              Held held, ProgressReport& progress) {
+  const auto work = std::make_shared<geo::CrackStats>();
+  const Writing writing(self->busy);
+  const auto cut = [self, sheet, options, work, crack = self->next_crack()](const geo::Progress& report) {
+    return geo::insert_sheet(self->complex, sheet->mesh, crack, options, work.get(), report);
+  };
+  auto delta = self->edit_held({}, true, [&] {
     return progress.run([&](const geo::Progress& report) {
-      return geo::insert_sheet(self.complex, sheet, crack, options, &work, report);
+      return held == Held::alone ? run_apart(report, "crack", cut) : cut(report);
     });
   });
-  delta->stats = dict_of(work);
+  delta->stats = dict_of(*work);
   return delta;
 }
 
@@ -36,7 +42,7 @@ geo::TriangleMesh sheet_of(const geo::Front& front) {
 }
 
 // Sweeps a front through all its steps, or inserts a sheet; a report before each.
-void sweep(const Shared& self, const geo::Front& front, const geo::CrackOptions& options, double max_move,
+void sweep(const Shared& self, const geo::Front& front, const geo::CrackOptions& options, double max_move, Held held,
            ProgressReport& progress) {
   const auto total = front.is_sheet() ? 1 : front.steps.size() - 1;
   const auto tell = [&](std::size_t done) {
@@ -44,7 +50,7 @@ void sweep(const Shared& self, const geo::Front& front, const geo::CrackOptions&
   };
   tell(0);
   if (front.is_sheet()) {
-    insert(*self, sheet_of(front), options, progress);
+    insert(self, std::make_shared<Mesh>(sheet_of(front)), options, held, progress);
     return tell(1);
   }
   LiveFront live{self, nullptr};
@@ -137,29 +143,29 @@ std::shared_ptr<Mesh> mesh_of_pair(const py::sequence& pair) {
       "steps");
 }
 
-void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& options, double max_move,
+void crack_by(const Shared& self, py::handle what, const geo::CrackOptions& options, double max_move, Held held,
               ProgressReport& progress) {
   if (is_sheet(what)) {
-    insert(*self, sheet_argument(what, *self)->mesh, options, progress);
+    insert(self, sheet_argument(what, *self), options, held, progress);
     return;
   }
   if (py::isinstance<py::list>(what) || py::isinstance<py::tuple>(what)) {
     bool mixed = py::len(what) > 0;
     for (const auto item : what) mixed = mixed && (is_sheet(item) || py::isinstance<geo::Front>(item));
     if (mixed) {
-      for (const auto item : what) crack_by(self, item, options, max_move, progress);
+      for (const auto item : what) crack_by(self, item, options, max_move, held, progress);
       return;
     }
     if (py::len(what) == 2)
       if (const auto sheet = mesh_of_pair(py::reinterpret_borrow<py::sequence>(what))) {
-        insert(*self, sheet->mesh, options, progress);
+        insert(self, sheet, options, held, progress);
         return;
       }
   }
   for (const auto& front : fronts_from(what, "what")) {
     if (!front.is_sheet() && front.steps.size() < 2)
       throw geo::InputError("what: the front '" + front.name + "' has one step; give two at least");
-    sweep(self, front, options, max_move, progress);
+    sweep(self, front, options, max_move, held, progress);
   }
 }
 
@@ -170,7 +176,7 @@ Shared cracked(const std::shared_ptr<Mesh>& mesh, const py::object& what, double
   keywords.finish();
   ProgressReport report(std::move(progress));
   auto made = uncut_complex(mesh);
-  crack_by(made, what, options, max_move, report);
+  crack_by(made, what, options, max_move, Held::alone, report);
   return made;
 }
 
@@ -235,18 +241,18 @@ void bind_crack(py::module_& module) {
             const auto options = crack_options(keywords);
             keywords.finish();
             ProgressReport report(std::move(progress));
-            crack_by(self, what, options, max_move, report);
+            crack_by(self, what, options, max_move, Held::by_others, report);
           },
           py::arg("what"), py::arg("max_move") = 0.0, py::arg_v("progress", py::none()), of_complex.c_str())
       .def(
           "insert",
-          [](Complex& self, const py::object& sheet, py::kwargs given) {
+          [](const Shared& self, const py::object& sheet, py::kwargs given) {
             Keywords keywords(std::move(given), "insert");
             const auto options = crack_options(keywords);
             keywords.finish();
-            const auto mesh = sheet_argument(sheet, self);
+            const auto mesh = sheet_argument(sheet, *self);
             ProgressReport no_report{py::none()};
-            return insert(self, mesh->mesh, options, no_report);
+            return insert(self, mesh, options, Held::by_others, no_report);
           },
           py::arg("sheet"),
           "Inserts the parts of a sheet (a Mesh, a Plane or a Score) in the material as one crack, in one step, and "

@@ -64,7 +64,7 @@ py::object per_corner(const py::object& values) {
                               py::arg("axis") = 1);
 }
 
-std::shared_ptr<Solid> from_trimesh(const py::object& mesh) {
+geo::TriangleMesh from_trimesh(const py::object& mesh) {
   auto arguments = empty_arguments();
   arguments.vertices = array(at(mesh, {"vertices"}));
   arguments.faces = array(at(mesh, {"faces"}));
@@ -77,11 +77,11 @@ std::shared_ptr<Solid> from_trimesh(const py::object& mesh) {
   if (by_vertex) arguments.colors = filled(at(mesh, {"visual", "vertex_colors"}));
   if (by_face) arguments.colors = filled(at(mesh, {"visual", "face_colors"}));
   if (!arguments.colors.is_none() && by_face) arguments.colors = per_corner(arguments.colors);
-  return std::make_shared<Solid>(without_seams(mesh_from(arguments)));
+  return without_seams(mesh_from(arguments));
 }
 
 // Open3D has one mesh class with attributes, and one with dictionaries of tensors.
-std::shared_ptr<Solid> from_open3d(const py::object& mesh) {
+geo::TriangleMesh from_open3d(const py::object& mesh) {
   auto arguments = empty_arguments();
   const bool tensors = py::hasattr(mesh, "vertex") && py::hasattr(mesh, "triangle");
   const auto tensor = [&](const char* of, const char* name) {
@@ -106,22 +106,30 @@ std::shared_ptr<Solid> from_open3d(const py::object& mesh) {
   }
   if (arguments.vertices.is_none() || arguments.faces.is_none())
     throw geo::InputError("from_open3d: the object has no vertices or triangles; give an Open3D TriangleMesh");
-  return std::make_shared<Solid>(without_seams(mesh_from(arguments)));
+  return without_seams(mesh_from(arguments));
 }
 
 }  // namespace
 
 void bind_imports(py::module_& module) {
+  py::class_<Mesh, std::shared_ptr<Mesh>>(module.attr("Mesh"))
+      .def_static(
+          "from_trimesh", [](const py::object& mesh) { return std::make_shared<Mesh>(from_trimesh(mesh)); },
+          py::arg("mesh"),
+          "The mesh of a trimesh.Trimesh, with its texture coordinates and colours; it may have holes.\n"
+          "Vertices at one position become one. Raises InputError.")
+      .def_static(
+          "from_open3d", [](const py::object& mesh) { return std::make_shared<Mesh>(from_open3d(mesh)); },
+          py::arg("mesh"),
+          "The mesh of an Open3D TriangleMesh, of either of its classes, with texture coordinates, colours, normals\n"
+          "and material ids as groups; it may have holes. Vertices at one position become one. Raises InputError.");
   py::class_<Solid, Mesh, std::shared_ptr<Solid>>(module.attr("Solid"))
       .def_static(
-          "from_trimesh", &from_trimesh, py::arg("mesh"),
-          "The model of a trimesh.Trimesh, with its texture coordinates and colours. Raises InputError where it is\n"
-          "no valid solid.")
+          "from_trimesh", [](const py::object& mesh) { return solid_or_remedy(from_trimesh(mesh)); }, py::arg("mesh"),
+          "As Mesh.from_trimesh(), a model. Raises InputError where it is no valid solid.")
       .def_static(
-          "from_open3d", &from_open3d, py::arg("mesh"),
-          "The model of an Open3D TriangleMesh, of either of its classes, with texture coordinates, colours, normals\n"
-          "and material ids as groups. Vertices at one position become one. Raises InputError where it is no valid\n"
-          "solid.");
+          "from_open3d", [](const py::object& mesh) { return solid_or_remedy(from_open3d(mesh)); }, py::arg("mesh"),
+          "As Mesh.from_open3d(), a model. Raises InputError where it is no valid solid.");
 }
 
 }  // namespace kerf_python

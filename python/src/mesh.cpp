@@ -3,7 +3,11 @@
 
 #include <pybind11/stl.h>
 
+#include <filesystem>
+
 #include "bind.h"
+#include "kerf/appearance.h"
+#include "kerf/files.h"
 
 namespace kerf_python {
 namespace {
@@ -27,13 +31,37 @@ py::array rows_of(const py::object& self, const std::vector<E>& values) {
 
 const geo::TriangleMesh& mesh_of(const py::object& self) { return self.cast<const Mesh&>().mesh; }
 
+// The materials of groups that an .mtl file describes, with their images; none where there is no
+// such file. They are read as those of an OBJ file beside it.
+void add_materials(geo::TriangleMesh& mesh) {
+  const std::filesystem::path file = mesh.attributes.materials;
+  if (file.empty() || mesh.attributes.group_names.empty() || !std::filesystem::is_regular_file(file)) return;
+  std::string obj = "mtllib " + file.filename().string() + "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n";
+  for (const std::string& name : mesh.attributes.group_names) obj += "usemtl " + name + "\nf 1/1 2/1 3/1\n";
+  const auto read = geo::parse_surface(obj, (file.parent_path() / "groups.obj").string());
+  mesh.attributes.library = read.mesh.attributes.library;
+}
+
 // Arguments of the constructors.
 geo::TriangleMesh made(py::object vertices, py::object faces, py::object uv, py::object normals, py::object colors,
                        py::object groups, py::object group_names, const std::string& materials, py::object patch,
                        py::object site, py::object source) {
-  return mesh_from({std::move(vertices), std::move(faces), std::move(uv), std::move(normals), std::move(colors),
-                    std::move(groups), std::move(group_names), std::move(patch), std::move(site), std::move(source),
-                    materials});
+  auto mesh = mesh_from({std::move(vertices), std::move(faces), std::move(uv), std::move(normals), std::move(colors),
+                         std::move(groups), std::move(group_names), std::move(patch), std::move(site),
+                         std::move(source), materials});
+  add_materials(mesh);
+  return mesh;
+}
+
+// The base colour of each group as (factor, image), which is the bytes of a PNG or JPEG, or None.
+py::list base_colors(const Mesh& self) {
+  const auto found = geo::base_colors(self.mesh.attributes);
+  py::list out;
+  for (const auto& of : found.of_group)
+    out.append(py::make_tuple(
+        py::make_tuple(of.factor[0], of.factor[1], of.factor[2], of.factor[3]),
+        of.image == geo::BaseColor::no_image ? py::object(py::none()) : py::object(py::bytes(found.images[of.image]))));
+  return out;
 }
 
 template <class Class>
@@ -125,7 +153,7 @@ constexpr const char* mesh_doc =
     "Mesh(vertices, faces, *, uv, normals, colors, groups, group_names, materials, patch, site, source)\n\n"
     "vertices: (n, 3) floats or integers. faces: (m, 3) integers. uv (…, 2), normals (…, 3) and colors (…, 3 or 4)\n"
     "have one row per vertex, (n, …), or per corner, (m, 3, …). colors: 0 to 1, or uint8. groups: (m,) integers or "
-    "names. patch and site: of a\n"
+    "names; materials: an .mtl file that describes groups by their names. patch and site: of a\n"
     "two-sided surface. source: (m,) integers. Arrays are checked and copied. Raises InputError.";
 constexpr const char* solid_doc =
     "A valid model: a closed, manifold mesh, oriented outwards, that does not intersect itself.\n\n"
@@ -146,6 +174,7 @@ void bind_mesh(py::module_& module) {
       optional("source"), "See the class.");
   add_arrays(mesh);
   add_measures(mesh);
+  mesh.def("_base_colors", &base_colors);
 
   py::class_<Solid, Mesh, std::shared_ptr<Solid>> solid(module, "Solid", solid_doc);
   solid.def(py::init([](py::object v, py::object f, py::object uv, py::object n, py::object c, py::object g,

@@ -45,8 +45,9 @@ std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh);
 std::shared_ptr<Solid> model_of(const std::shared_ptr<Mesh>& mesh);
 
 /// The mesh with edges of at most `longest`, model units. Throws InputError for a two-sided mesh,
-/// and where that would make more than 20 million triangles. To be called with the GIL.
-geo::TriangleMesh refined_mesh(const Mesh& mesh, double longest);
+/// and where that would make more than 20 million triangles, and Interrupted. To be called with the
+/// GIL.
+geo::TriangleMesh refined_mesh(const std::shared_ptr<Mesh>& mesh, double longest, const py::object& progress);
 
 /// The arrays of a mesh as Python gives them; None where there is none.
 struct MeshArguments {

@@ -80,7 +80,7 @@ std::vector<T> per_element(py::handle object, const std::string& name, std::size
   return out;
 }
 
-// Colours from 0 to 1: bytes are divided by 255. Throws InputError for other integers above 1.
+// Colours from 0 to 1: bytes are divided by 255. Throws InputError for other numbers outside.
 py::object unit_colors(const py::object& colors) {
   if (colors.is_none()) return colors;
   const py::object array = py::module_::import("numpy").attr("asarray")(colors);
@@ -89,6 +89,12 @@ py::object unit_colors(const py::object& colors) {
   const bool integers = (kind == "u" || kind == "i") && array.attr("size").cast<py::ssize_t>() > 0;
   if (integers && array.attr("max")().cast<double>() > 1)
     throw geo::InputError("colors: integers above 1; give floats from 0 to 1, or uint8");
+  if (kind != "f" || array.attr("size").cast<py::ssize_t>() == 0) return colors;
+  constexpr double slack = 1e-6;  // what arithmetic with float32 adds
+  for (const double value : {array.attr("min")().cast<double>(), array.attr("max")().cast<double>()})
+    if (value < -slack || value > 1 + slack)
+      throw geo::InputError("colors: a value of " + py::str(py::float_(value)).cast<std::string>() +
+                            "; give floats from 0 to 1, or uint8");
   return colors;
 }
 

@@ -56,12 +56,12 @@ py::object wrap(const Shared& self, double voxel, const py::object& progress) {
   return py::module_::import("kerf._formats").attr("wrapped")(self, voxel, progress);
 }
 
-std::pair<Shared, geo::RepairStats> repaired(const Mesh& self, double weld, bool smooth, const std::string& inner) {
-  plain(self, "repair");
+std::pair<Shared, geo::RepairStats> repaired(const Shared& self, double weld, bool smooth, const std::string& inner) {
+  plain(*self, "repair");
   require_weld(weld, "repair");
   const geo::RepairOptions options{weld, smooth, inner_from(inner, "repair")};
-  return without_gil([&] {
-    auto mesh = self.mesh;
+  return stoppable("repair", [self, options](const geo::Progress&) {
+    auto mesh = self->mesh;
     const auto stats = geo::repair(mesh, options);
     return std::pair{std::make_shared<Mesh>(std::move(mesh)), stats};
   });
@@ -82,9 +82,16 @@ Shared united(const Shared& self, const geo::RepairOptions& options, const py::o
   });
 }
 
-Shared self_union(const Mesh& self) {
-  plain(self, "self_union");
-  return without_gil([&] { return std::make_shared<Mesh>(geo::self_union(self.mesh)); });
+Shared self_union(const Shared& self, const py::object& progress) {
+  plain(*self, "self_union");
+  return stoppable(
+      "unite", [self](const geo::Progress&) { return std::make_shared<Mesh>(geo::self_union(self->mesh)); }, progress);
+}
+
+std::shared_ptr<Solid> rounded(const std::shared_ptr<Solid>& self) {
+  const auto model = model_of(self);
+  auto mesh = stoppable("round", [model](const geo::Progress&) { return geo::rounded_solid(model->mesh); });
+  return std::make_shared<Solid>(std::move(mesh), true);
 }
 
 std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool smooth, double voxel, double longest,
@@ -101,7 +108,7 @@ std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool
                .cast<Shared>();
   else
     mesh = united(mesh, options, progress);
-  if (longest != 0) mesh = std::make_shared<Mesh>(refined_mesh(*mesh, longest));
+  if (longest != 0) mesh = std::make_shared<Mesh>(refined_mesh(mesh, longest, progress));
   try {
     const bool known = longest == 0;  // valid, by repaired_solid() or wrapped_solid()
     return std::make_shared<Solid>(std::move(mesh->mesh), known);
@@ -112,26 +119,28 @@ std::shared_ptr<Solid> repaired_solid(const py::object& model, double weld, bool
   }
 }
 
-std::vector<Shared> convex_decomposition(const Mesh& self, std::int64_t count, std::int64_t corners,
+std::vector<Shared> convex_decomposition(const Shared& self, std::int64_t count, std::int64_t corners,
                                          py::object progress) {
   if (count < 1 || count > 1000) throw geo::InputError("convex_decomposition: count must be from 1 to 1000");
   if (corners < 4 || corners > 100000) throw geo::InputError("convex_decomposition: corners must be from 4 to 100000");
-  if (collapsed_triangles(self.mesh) > 0 || self.mesh.triangles.empty())
+  if (collapsed_triangles(self->mesh) > 0 || self->mesh.triangles.empty())
     throw geo::InputError("convex_decomposition: the mesh is empty, or a triangle has a vertex twice; repair it");
-  ProgressReport report(std::move(progress));
-  return report.run([&](const geo::Progress& progress) {
+  const auto work = [self, count, corners](const geo::Progress& own) {
     std::vector<Shared> out;
-    for (auto& hull : geo::convex_decomposition(self.mesh, static_cast<std::size_t>(count),
-                                                static_cast<std::size_t>(corners), progress))
+    for (auto& hull :
+         geo::convex_decomposition(self->mesh, static_cast<std::size_t>(count), static_cast<std::size_t>(corners), own))
       out.push_back(std::make_shared<Mesh>(std::move(hull)));
     return out;
-  });
+  };
+  return stoppable("hulls", work, std::move(progress));
 }
 
-py::array nearest(const Mesh& self, const py::object& points) {
-  const auto at = points_from(points, "points");
-  if (self.mesh.triangles.empty()) throw geo::InputError("nearest: the mesh has no triangles");
-  return moved<std::uint32_t>(without_gil([&] { return geo::nearest_triangles(self.mesh, at); }));
+py::array nearest(const Shared& self, const py::object& points, const py::object& progress) {
+  auto at = points_from(points, "points");
+  if (self->mesh.triangles.empty()) throw geo::InputError("nearest: the mesh has no triangles");
+  return moved<std::uint32_t>(stoppable(
+      "nearest", [self, at = std::move(at)](const geo::Progress&) { return geo::nearest_triangles(self->mesh, at); },
+      progress));
 }
 
 py::dict trimesh_arguments(const py::object& self) {
@@ -200,8 +209,8 @@ void add_measures(py::class_<Mesh, Shared>& mesh) {
             }));
           },
           "Smallest angle of each triangle, (m,) float64, degrees.")
-      .def("nearest", &nearest, py::arg("points"),
-           "The triangle nearest to each point, (n, 3): (n,) uint32. Raises InputError for an empty mesh.")
+      .def("nearest", &nearest, py::arg("points"), py::arg_v("progress", py::none()),
+           "The triangle nearest to each point, (n, 3): (n,) uint32. Raises InputError for an empty mesh, Interrupted.")
       .def("convex_decomposition", &convex_decomposition, py::arg("count") = 1, py::arg("corners") = 64,
            py::arg_v("progress", py::none()),
            "Approximate convex decomposition of a closed mesh: at most `count` convex hulls, a list of Mesh, of at "
@@ -221,17 +230,20 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
            "outwards.\n"
            "Attributes stay with their triangles. Intersecting triangles remain: see check(). Raises InputError.")
       .def(
-          "self_union", &self_union,
+          "self_union", &self_union, py::arg_v("progress", py::none()),
           "The boundary of the points where the generalized winding number exceeds a half (Jacobson, Kavan and\n"
           "Sorkine-Hornung 2013): one solid of parts that overlap, touch, cross themselves or have walls inside. Open\n"
           "parts enclose nothing: see repair(). Vertices of triangles that cross nothing stay bit for bit; attributes\n"
-          "are interpolated. Returns a Mesh. Raises InputError, and GeometryError where nothing is enclosed.")
+          "are interpolated. Returns a Mesh. Raises InputError, GeometryError where nothing is enclosed, Interrupted.")
       .def(
           "refine",
-          [](const Mesh& self, double longest) { return std::make_shared<Mesh>(refined_mesh(self, longest)); },
-          py::arg("longest"),
+          [](const Shared& self, double longest, const py::object& progress) {
+            return std::make_shared<Mesh>(refined_mesh(self, longest, progress));
+          },
+          py::arg("longest"), py::arg_v("progress", py::none()),
           "A plain mesh with edges of at most `longest`, model units: longer ones are bisected. The shape stays to\n"
-          "rounding; attributes are interpolated. Raises InputError where over 20 million triangles would result.")
+          "rounding; attributes are interpolated. Raises InputError where over 20 million triangles would result,\n"
+          "Interrupted.")
       .def("wrap", &wrap, py::arg("voxel"), py::arg_v("progress", py::none()),
            "A new surface around closed parts, which may intersect themselves, and open sheets: the zero level of "
            "their\n"
@@ -242,10 +254,10 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
            "diagonal, Interrupted.")
       .def(
           "transfer_attributes",
-          [](const Mesh& self, const py::object& original) {
+          [](const Shared& self, const py::object& original) {
             const auto from = mesh_argument(original, "original");
-            return without_gil([&] {
-              auto mesh = self.mesh;
+            return stoppable("attributes", [self, from](const geo::Progress&) {
+              auto mesh = self->mesh;
               geo::transfer_attributes(from->mesh, mesh);
               return std::make_shared<Mesh>(std::move(mesh));
             });
@@ -261,13 +273,14 @@ void add_changes(py::class_<Mesh, Shared>& mesh) {
 
 }  // namespace
 
-geo::TriangleMesh refined_mesh(const Mesh& self, double longest) {
-  plain(self, "refine");
+geo::TriangleMesh refined_mesh(const Shared& self, double longest, const py::object& progress) {
+  plain(*self, "refine");
   if (!(longest > 0)) throw geo::InputError("refine: longest must be positive");
   // A triangle with edges of that length has at most the area of the equilateral one.
-  if (geo::area(self.mesh) > 20e6 * 0.25 * std::sqrt(3.0) * longest * longest)
+  if (geo::area(self->mesh) > 20e6 * 0.25 * std::sqrt(3.0) * longest * longest)
     throw geo::InputError("refine: edges so short would make more than 20 million triangles; let them be longer");
-  return without_gil([&] { return geo::refined(self.mesh, longest); });
+  return stoppable(
+      "refine", [self, longest](const geo::Progress&) { return geo::refined(self->mesh, longest); }, progress);
 }
 
 void bind_mesh_methods(py::module_& module) {
@@ -279,8 +292,15 @@ void bind_mesh_methods(py::module_& module) {
       .def(py::init(&checked_solid), py::arg("mesh"), "Of a Mesh, or an object with vertices and faces.")
       .def(
           "refine",
-          [](const Solid& self, double longest) { return std::make_shared<Solid>(refined_mesh(self, longest)); },
-          py::arg("longest"), "As Mesh.refine(); the result is checked to be a valid model.")
+          [](const std::shared_ptr<Solid>& self, double longest, const py::object& progress) {
+            return std::make_shared<Solid>(refined_mesh(self, longest, progress));
+          },
+          py::arg("longest"), py::arg_v("progress", py::none()),
+          "As Mesh.refine(); the result is checked to be a valid model.")
+      .def("rounded", &rounded,
+           "The model with coordinates in single precision, for files and programs that hold no more: a Solid.\n"
+           "Triangles that cross once they are rounded are divided and united. Raises GeometryError where it is no\n"
+           "solid after ten rounds.")
       .def_static(
           "repaired", &repaired_solid, py::arg("mesh"), py::arg("weld") = 0.0, py::arg("smooth") = false,
           py::arg("voxel") = 0.0, py::arg("longest") = 0.0, py::arg("inner") = "oriented", py::arg("open") = "auto",

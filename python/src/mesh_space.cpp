@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "apart.h"
 #include "bind.h"
 #include "busy.h"
 #include "kerf/complex.h"
@@ -105,25 +106,36 @@ bool leaves(const geo::Complex& complex, const geo::Vec3& p, const geo::Vec3& ou
   return geo::faces_on_segment(complex, p, outside).size() % 2 == 1;
 }
 
-py::array contains(const Shared& self, const py::object& points) {
-  const auto at = points_from(points, "points");
-  const auto uncut = model_of(self)->uncut();
-  auto inside = without_gil([&] {
-    std::vector<std::uint8_t> out(at.size());
-    const auto& box = uncut->extent();
-    geo::parallel_for(at.size(), 64, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const geo::Vec3& p = at[i];
-        if ((p.array() < box.lo.array()).any() || (p.array() > box.hi.array()).any()) continue;
-        // A way that touches an edge counts its two faces. The third decides where two differ.
-        const auto ways = ways_out(box, p);
-        const bool first = leaves(*uncut, p, ways[0]);
-        const bool second = leaves(*uncut, p, ways[1]);
-        out[i] = first == second ? first : leaves(*uncut, p, ways[2]);
-      }
-    });
-    return out;
-  });
+// Points between two looks for Ctrl-C: some 0.1 s.
+constexpr std::size_t contains_block = 1u << 16;
+
+// Whether p is inside. A way that touches an edge counts its two faces. The third decides where two
+// differ.
+bool is_inside(const geo::Complex& complex, const geo::Vec3& p) {
+  const auto& box = complex.extent();
+  if ((p.array() < box.lo.array()).any() || (p.array() > box.hi.array()).any()) return false;
+  const auto ways = ways_out(box, p);
+  const bool first = leaves(complex, p, ways[0]);
+  const bool second = leaves(complex, p, ways[1]);
+  return first == second ? first : leaves(complex, p, ways[2]);
+}
+
+py::array contains(const Shared& self, const py::object& points, const py::object& progress) {
+  auto given = points_from(points, "points");
+  const auto complex = model_of(self)->uncut();
+  auto inside = stoppable(
+      "contains",
+      [complex, at = std::move(given)](const geo::Progress& own) {
+        std::vector<std::uint8_t> out(at.size());
+        for (std::size_t from = 0; from < at.size(); from += contains_block) {
+          geo::report(own, "contains", from, at.size());
+          geo::parallel_for(std::min(contains_block, at.size() - from), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = from + begin; i < from + end; ++i) out[i] = is_inside(*complex, at[i]);
+          });
+        }
+        return out;
+      },
+      progress);
   return moved<bool>(std::move(inside));
 }
 
@@ -203,10 +215,10 @@ void bind_mesh_space(py::module_& module) {
             return without_gil([&] { return std::make_shared<Mesh>(transformed(self.mesh, map)); });
           },
           py::arg("matrix"), of_mesh.c_str())
-      .def("contains", &contains, py::arg("points"),
+      .def("contains", &contains, py::arg("points"), py::arg_v("progress", py::none()),
            "Whether each point, (n, 3), is inside: (n,) bool. On the surface itself it may be either. Raises "
            "InputError\n"
-           "where the mesh is no valid model.")
+           "where the mesh is no valid model, Interrupted.")
       .def(
           "copy", [](const Shared& self) { return self; }, "The mesh itself: it never changes.")
       .def_property_readonly(

@@ -105,13 +105,13 @@ void bind_piece(py::module_& module) {
       .def_readonly("index", &Piece::index, "Its number among the pieces, in descending order of volume.")
       .def(
           "refine",
-          [](const Piece& self, double longest) {
-            geo::Chunk chunk{refined_mesh(self, longest), self.volume, self.centroid};
-            auto out = std::make_shared<Piece>(std::move(chunk), self.index);
-            out->hulls = self.hulls;
+          [](const std::shared_ptr<Piece>& self, double longest, const py::object& progress) {
+            geo::Chunk chunk{refined_mesh(self, longest, progress), self->volume, self->centroid};
+            auto out = std::make_shared<Piece>(std::move(chunk), self->index);
+            out->hulls = self->hulls;
             return out;
           },
-          py::arg("longest"), "As Mesh.refine(): the same piece, with its hulls.")
+          py::arg("longest"), py::arg_v("progress", py::none()), "As Mesh.refine(): the same piece, with its hulls.")
       .def_readonly("volume", &Piece::volume, "Volume, model units cubed.")
       .def_property_readonly(
           "centroid", [](const Piece& self) { return point(self.centroid); }, "Centroid of the material, (3,) float64.")

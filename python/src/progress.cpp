@@ -8,7 +8,7 @@
 namespace kerf_python {
 namespace {
 
-constexpr auto interval = std::chrono::milliseconds(50);
+constexpr auto interval = std::chrono::milliseconds(20);
 
 }  // namespace
 

@@ -13,7 +13,7 @@ namespace kerf_python {
 
 namespace py = pybind11;
 
-/// Reports of one call. The call runs without the GIL; a report takes it, at most about twenty
+/// Reports of one call. The call runs without the GIL; a report takes it, at most about fifty
 /// times a second, to look for Ctrl-C and to call Python.
 class ProgressReport {
  public:

@@ -9,6 +9,7 @@
 #include <array>
 #include <exception>
 
+#include "apart.h"
 #include "bind.h"
 #include "complex.h"
 #include "fronts.h"
@@ -190,13 +191,37 @@ geo::ScoreOptions options_from(const std::string& pattern, Keywords& keywords, c
   return o;
 }
 
+// A score with the model cut along it, which is empty where it was not wanted.
+struct Scored {
+  geo::Score score;
+  geo::Complex cut;
+};
+
+// Whether the model is to be cut, too.
+enum class AlsoCut { no, yes };
+
+// Makes the score, with the options of a call. A thread of its own holds a complex that never
+// changes, and calls nothing of Python.
+Scored scored(const ModelReading& reading, const geo::ScoreOptions& options, bool calls_python, AlsoCut also,
+              ProgressReport& report) {
+  const auto uncut = reading.uncut();
+  const auto work = [uncut, complex = &reading.complex(), options, also](const geo::Progress& progress) {
+    Scored out;
+    out.score = geo::make_score(*complex, options, progress, also == AlsoCut::yes ? &out.cut : nullptr);
+    return out;
+  };
+  return report.run([&](const geo::Progress& progress) {
+    return uncut && !calls_python ? run_apart(progress, "score", work) : work(progress);
+  });
+}
+
 // The score of a model, and, where `cut` is given, the model cut along it.
-std::shared_ptr<ScoreResult> make(const geo::Complex& complex, py::handle model, const std::string& pattern,
+std::shared_ptr<ScoreResult> make(const ModelReading& reading, py::handle model, const std::string& pattern,
                                   ProgressReport& report, py::kwargs given, geo::Complex* cut = nullptr) {
   Keywords keywords(std::move(given), "score");
   PythonDensity python;
   const auto density = keywords.object("density");
-  auto options = options_from(pattern, keywords, complex.extent());
+  auto options = options_from(pattern, keywords, reading.complex().extent());
   keywords.finish();
   options.pattern.density = density_from(density, model, python);
   if (options.pattern.density && options.pattern.pattern != geo::Pattern::voronoi &&
@@ -204,7 +229,10 @@ std::shared_ptr<ScoreResult> make(const geo::Complex& complex, py::handle model,
     throw geo::InputError("density: goes with the patterns voronoi and wood");
   geo::Score made;
   try {
-    made = report.run([&](const geo::Progress& progress) { return geo::make_score(complex, options, progress, cut); });
+    const bool calls_python = static_cast<bool>(python.callable);
+    Scored out = scored(reading, options, calls_python, cut ? AlsoCut::yes : AlsoCut::no, report);
+    made = std::move(out.score);
+    if (cut) *cut = std::move(out.cut);
   } catch (const geo::Interrupted&) {
     if (python.error) std::rethrow_exception(python.error);
     throw;
@@ -219,7 +247,7 @@ std::shared_ptr<ScoreResult> score(const py::object& model, const std::string& p
                                    py::kwargs given) {
   ProgressReport report(std::move(progress));
   const ModelReading reading(model, "model");
-  return make(reading.complex(), model, pattern, report, std::move(given));
+  return make(reading, model, pattern, report, std::move(given));
 }
 
 py::object fracture(const std::shared_ptr<Mesh>& self, const py::object& pieces, const std::string& pattern,
@@ -227,8 +255,9 @@ py::object fracture(const std::shared_ptr<Mesh>& self, const py::object& pieces,
   given["pieces"] = pieces;
   ProgressReport report(progress);
   const auto model = model_of(self);
+  const ModelReading reading(py::cast(model), "model");
   geo::Complex cut;
-  make(*model->uncut(), py::cast(self), pattern, report, std::move(given), &cut);
+  make(reading, py::cast(self), pattern, report, std::move(given), &cut);
   const auto made = std::make_shared<Complex>(std::move(cut), model);
   return py::cast(made).attr("pieces")(py::arg("progress") = progress);
 }

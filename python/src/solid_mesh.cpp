@@ -1,17 +1,34 @@
 // Solids are tested once, when they are made, without the GIL.
+#include "apart.h"
 #include "gil.h"
 #include "kerf/check.h"
 #include "kerf/error.h"
 #include "mesh.h"
 
 namespace kerf_python {
+namespace {
 
-Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(std::move(m)) {
-  if (!known) {
+// A smaller mesh is tested in less time than Ctrl-C may take.
+constexpr std::size_t small_mesh = 20'000;
+
+// The mesh, if it is a valid model; else throws InputError. A large one can be stopped.
+geo::TriangleMesh tested(geo::TriangleMesh&& mesh) {
+  if (mesh.triangles.size() <= small_mesh) {
     const GilRelease release;
     geo::require_solid(mesh);
+    return std::move(mesh);
   }
+  const auto shared = std::make_shared<geo::TriangleMesh>(std::move(mesh));
+  stoppable("check", [shared](const geo::Progress&) {
+    geo::require_solid(*shared);
+    return true;
+  });
+  return std::move(*shared);
 }
+
+}  // namespace
+
+Solid::Solid(geo::TriangleMesh m, bool known) : Mesh(known ? std::move(m) : tested(std::move(m))) {}
 
 std::shared_ptr<Solid> solid_or_remedy(geo::TriangleMesh mesh) {
   try {

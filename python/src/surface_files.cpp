@@ -3,7 +3,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cctype>
 
+#include "apart.h"
 #include "arguments.h"
 #include "bind.h"
 #include "complex.h"
@@ -11,11 +13,19 @@
 #include "kerf/error.h"
 #include "kerf/export.h"
 #include "kerf/files.h"
+#include "kerf/repair.h"
 #include "kind.h"
 #include "pieces.h"
 
 namespace kerf_python {
 namespace {
+
+// Whether a path has this ending, in capitals or not.
+bool ends(const std::string& path, const std::string& ending) {
+  const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+  return path.size() >= ending.size() &&
+         std::equal(path.end() - std::ptrdiff_t(ending.size()), path.end(), ending.begin(), same);
+}
 
 [[noreturn]] void unknown_ending(const std::string& path, const char* known) {
   throw geo::InputError(path + ": ends in no known format; give " + known);
@@ -49,8 +59,8 @@ void save_as_obj(const std::string& path, geo::TriangleMesh&& mesh) {
 
 // Warns of what STL and OFF do not hold. Throws InputError where single precision is too coarse.
 void warn_of_plain(const geo::TriangleMesh& mesh, const std::string& path) {
-  const bool stl = path.ends_with(".stl");
-  if (!stl && !path.ends_with(".off")) return;
+  const bool stl = ends(path, ".stl");
+  if (!stl && !ends(path, ".off")) return;
   if (stl && !geo::single_precision_offset(geo::bounding_box(mesh)).isZero(0))
     throw geo::InputError(path + ": the model is too far from the origin for single precision; save a .ply");
   if (mesh.attributes.empty() && mesh.patch.empty()) return;
@@ -60,17 +70,19 @@ void warn_of_plain(const geo::TriangleMesh& mesh, const std::string& path) {
 
 // Warns where a .glb gets an offset.
 void warn_of_offset(const geo::Box3& box, const std::string& path) {
-  if (!path.ends_with(".glb") || geo::single_precision_offset(box).isZero(0)) return;
+  if (!ends(path, ".glb") || geo::single_precision_offset(box).isZero(0)) return;
   const std::string text = path + ": the model is far from the origin; the root node moves it there";
   if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 geo::SurfaceFile parsed(const std::string& bytes, const std::string& name, const std::string& unit) {
-  return with_warnings(without_gil([&] { return geo::parse_surface(bytes, name); }), name, unit);
+  return with_warnings(stoppable("read", [=](const geo::Progress&) { return geo::parse_surface(bytes, name); }), name,
+                       unit);
 }
 
 geo::SurfaceFile read(const Path& path, const std::string& unit) {
-  return with_warnings(without_gil([&] { return geo::read_surface(path.text); }), path.text, unit);
+  return with_warnings(stoppable("read", [=](const geo::Progress&) { return geo::read_surface(path.text); }), path.text,
+                       unit);
 }
 
 std::shared_ptr<Complex> with_fronts(geo::SurfaceFile&& file, const std::string& name) {
@@ -105,8 +117,11 @@ std::shared_ptr<Solid> solid_of(geo::SurfaceFile&& file, const std::string& name
 
 // A Complex where the surface is cut, a Solid where it is one, else a Mesh.
 py::object any_surface(const Path& path, const std::string& unit) {
-  auto file = read(path, unit);
-  const bool valid = without_gil([&] { return geo::check_surface(file.mesh, geo::SelfIntersections::find).good(); });
+  const auto shared = std::make_shared<geo::SurfaceFile>(read(path, unit));
+  const bool valid = stoppable("check", [shared](const geo::Progress&) {
+    return geo::check_surface(shared->mesh, geo::SelfIntersections::find).good();
+  });
+  auto& file = *shared;
   if (!valid) return py::cast(std::make_shared<Mesh>(std::move(file.mesh)));
   if (file.fronts.empty()) forget_sites(file.mesh);
   if (file.mesh.two_sided()) return py::cast(with_fronts(std::move(file), path.text));
@@ -140,20 +155,45 @@ void write_ply(std::ostream& out, const geo::TriangleMesh& mesh, double unit) {
   geo::write_ply(out, stated);
 }
 
-void save_mesh(const Mesh& self, const Path& path, const std::string& unit_name) {
+// A solid as an .stl holds it: valid in single precision. Any other mesh as it is, and a piece in
+// which a crack ends.
+std::shared_ptr<Mesh> as_stl(const std::shared_ptr<Mesh>& mesh) {
+  if (!dynamic_cast<const Solid*>(mesh.get())) return mesh;
+  return stoppable("round", [mesh](const geo::Progress&) {
+    geo::TriangleMesh bare;
+    bare.vertices = mesh->mesh.vertices;
+    bare.triangles = mesh->mesh.triangles;
+    if (!mesh->is_model() && !geo::check_surface(bare, geo::SelfIntersections::find).good()) return mesh;
+    return std::make_shared<Mesh>(geo::rounded_solid(bare));
+  });
+}
+
+// Warns where triangles of a model cross in the coordinates of a .glb.
+void warn_of_rounding(const Mesh& mesh, const geo::Chunk& chunk, const std::string& path) {
+  if (!mesh.is_model()) return;
+  const auto pairs = without_gil([&] { return geo::crossings_in_single_precision(chunk); });
+  if (pairs == 0) return;
+  const std::string text = path + ": " + std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs") +
+                           " of triangles cross in single precision; save rounded(), or a .ply";
+  if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+void save_mesh(const std::shared_ptr<Mesh>& given, const Path& path, const std::string& unit_name) {
   const std::string& p = path.text;
   const double unit = metres_of(unit_name);
-  const auto ends = [&](const char* ending) { return p.ends_with(ending); };
-  if (!ends(".ply") && !ends(".obj") && !ends(".glb") && !ends(".stl") && !ends(".off"))
+  if (!ends(p, ".ply") && !ends(p, ".obj") && !ends(p, ".glb") && !ends(p, ".stl") && !ends(p, ".off"))
     unknown_ending(p, ".ply, .obj, .glb, .stl or .off");
-  if (ends(".obj")) return save_as_obj(p, geo::TriangleMesh(self.mesh));
-  warn_of_plain(self.mesh, p);
+  const auto written = ends(p, ".stl") ? as_stl(given) : given;
+  const Mesh& self = *written;
+  if (ends(p, ".obj")) return save_as_obj(p, geo::TriangleMesh(self.mesh));
+  if (ends(p, ".glb")) warn_of_rounding(self, chunk_of(self, unit), p);
+  warn_of_plain(given->mesh, p);
   warn_of_offset(geo::bounding_box(self.mesh), p);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
-      if (ends(".ply")) return write_ply(out, self.mesh, unit);
-      if (ends(".stl")) return geo::write_stl(out, self.mesh);
-      if (ends(".off")) return geo::write_off(out, self.mesh);
+      if (ends(p, ".ply")) return write_ply(out, self.mesh, unit);
+      if (ends(p, ".stl")) return geo::write_stl(out, self.mesh);
+      if (ends(p, ".off")) return geo::write_off(out, self.mesh);
       write_glb(out, self, unit);
     });
   });
@@ -190,20 +230,20 @@ struct SaveOptions {
 void save_complex(Complex& self, const Path& path, const SaveOptions& w, const std::string& unit_name) {
   const std::string& p = path.text;
   const double unit = metres_of(unit_name);
-  if (!p.ends_with(".ply") && !p.ends_with(".obj") && !p.ends_with(".glb")) unknown_ending(p, ".ply, .obj or .glb");
+  if (!ends(p, ".ply") && !ends(p, ".obj") && !ends(p, ".glb")) unknown_ending(p, ".ply, .obj or .glb");
   require_tile(w.tile, w.strength);
   if (w.corners != 0 && (w.corners < 4 || w.corners > 100000))
     throw geo::InputError("save: corners must be 0 or from 4 to 100000");
   if (w.parts < 1 || w.parts > 1000) throw geo::InputError("save: parts must be from 1 to 1000");
   warn_of_offset(self.complex.extent(), p);
   const Reading reading(self.busy);
-  if (p.ends_with(".obj")) return save_as_obj(p, without_gil([&] { return self.surface(); }));
-  const auto found = p.ends_with(".glb") ? self.found() : nullptr;
+  if (ends(p, ".obj")) return save_as_obj(p, without_gil([&] { return self.surface(); }));
+  const auto found = ends(p, ".glb") ? self.found() : nullptr;
   std::vector<geo::FrontState> fronts;
   for (const auto& front : self.fronts) fronts.push_back(front->state);
   without_gil([&] {
     geo::write_all(p, [&](std::ostream& out) {
-      if (p.ends_with(".ply")) {
+      if (ends(p, ".ply")) {
         geo::TriangleMesh mesh = self.surface();
         if (unit > 0) mesh.unit = unit;
         return geo::write_ply(out, mesh, fronts);

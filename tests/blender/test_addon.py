@@ -163,6 +163,41 @@ def test_text():
     scenes.check_pieces(solid, 9)
 
 
+def test_text_with_bevel():
+    """Texts whose triangles cross once they are rounded to single precision: Repair mends them in the coordinates of Blender."""
+    for body, extrude, bevel in (("Kerf", 0.2, 0.03), ("Ag8&", 0.1, 0.02), ("12345", 0.3, 0.04)):
+        bpy.ops.object.text_add()
+        found = scenes.last_object("text")
+        found.data.body, found.data.extrude, found.data.bevel_depth = body, extrude, bevel
+        select(found)
+        assert bpy.ops.object.kerf_repair() == {"FINISHED"}
+        solid = bpy.data.objects["text Solid"]
+        bpy.context.view_layer.update()
+        fracture(pieces=12)
+        scenes.check_pieces(solid, 12)
+        for gone in list(bpy.data.objects):
+            bpy.data.objects.remove(gone)
+
+
+def test_image():
+    """The black square of an image is cut out of a cube; without an image the operator says what to do."""
+    found = box("plate")
+    select(found)
+    refused(lambda: fracture(pattern="curves", image="none"), "there is no image 'none'")
+    refused(lambda: fracture(pattern="curves", image=""), "the pattern Image needs one")
+    image = bpy.data.images.new("square", 32, 32)
+    pixels = numpy.ones((32, 32, 4), numpy.float32)
+    pixels[8:24, 4:12, :3] = 0  # rows from below, columns from the left
+    image.pixels.foreach_set(pixels.ravel())
+    fracture(pattern="curves", image="square", axis="Z", pieces=2)
+    scenes.check_pieces(found, 2)
+    small = min(scenes.pieces_of("plate"), key=lambda piece: piece["volume"])
+    size = numpy.array(found.dimensions)
+    whole = size.prod()
+    assert 7 * 15 / 1024 < small["volume"] / whole < 9 * 17 / 1024, small["volume"] / whole
+    assert abs((small.matrix_world.translation - found.matrix_world.translation)[0] / size[0] + 0.25) < 0.02
+
+
 def test_nurbs():
     """A NURBS sphere, whose poles have triangles without area, is repaired and broken."""
     bpy.ops.surface.primitive_nurbs_surface_sphere_add(location=(3, 0, 1))

@@ -157,6 +157,10 @@ kerf_score_options score_options(Arguments& a) {
     o.density = a.numbers(8);
     o.density_length = a.one_of<std::size_t>({8, 0, 7});
   }
+  static const std::uint8_t pixels[16] = {};
+  if (a.random().below(4) == 0) o.image = pixels;
+  o.image_width = a.one_of({4, 2, 0, -1});
+  o.image_height = a.one_of({4, 1, 0});
   o.has_axis = a.one_of({0, 1, 2});
   o.has_impact = a.one_of({0, 1, -7});
   for (double& x : o.axis) x = a.number();

@@ -92,3 +92,36 @@ TEST_CASE("chips are pieces beside those wanted, and edges have finer walls", "[
   CHECK(pieces == nullptr);
   kerf_free(mesh);
 }
+
+TEST_CASE("the black areas of an image are cut out", "[c]") {
+  kerf_mesh mesh = block();
+  constexpr int n = 32;
+  std::vector<std::uint8_t> pixels(n * n, 255);  // white, with a black square of half the width
+  for (int y = 8; y < 24; ++y)
+    for (int x = 8; x < 24; ++x) pixels[std::size_t(n * y + x)] = 0;
+  kerf_score_options options;
+  REQUIRE(kerf_score_defaults(&options) == KERF_OK);
+  CHECK(options.image == nullptr);
+  options.pattern = KERF_CURVES;
+  kerf_pieces pieces = nullptr;
+  CHECK(kerf_fracture(mesh, &options, nullptr, nullptr, &pieces) == KERF_ARGUMENT);  // without an image
+  options.image = pixels.data();
+  options.image_width = options.image_height = n;
+  options.has_axis = 1;
+  options.axis[0] = options.axis[1] = 0;
+  options.axis[2] = 1;
+  options.pieces = 2;
+  REQUIRE(kerf_fracture(mesh, &options, nullptr, nullptr, &pieces) == KERF_OK);
+  REQUIRE(count_of(pieces) == 2);
+  kerf_mesh piece = nullptr;
+  kerf_measures measures;
+  REQUIRE(kerf_pieces_mesh(pieces, 1, &piece) == KERF_OK);
+  REQUIRE(kerf_mesh_measures(piece, &measures) == KERF_OK);
+  CHECK(measures.volume > 15.0 * 15 / (n * n));  // outlines are within half a pixel
+  CHECK(measures.volume < 17.0 * 17 / (n * n));
+  kerf_free(piece);
+  kerf_free(pieces);
+  options.pattern = KERF_VORONOI;
+  CHECK(kerf_fracture(mesh, &options, nullptr, nullptr, &pieces) == KERF_ARGUMENT);
+  kerf_free(mesh);
+}

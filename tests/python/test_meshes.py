@@ -254,6 +254,26 @@ class Files(unittest.TestCase):
         with self.assertRaisesRegex(kerf.InputError, "snap_edges"):
             s.crack(np.array(lines), snap_edges=2)
 
+    def test_several_parts_of_a_scan(self):
+        places = np.array([[0, 0, 0], [2, 0.3, 0], [0, 2.2, 0.1], [-1.7, 0, 0.2], [0.2, 0, 2.3]])
+        radii = np.array([1, 0.5, 0.7, 0.35, 0.8])
+        for parts in (2, 5):
+            random = np.random.default_rng(parts)
+            points = []
+            for place, radius in zip(places[:parts], radii):
+                ball = random.normal(size=(int(6000 * radius ** 2), 3))
+                points.append(place + radius * ball / np.linalg.norm(ball, axis=1)[:, None])
+            solid = kerf.reconstruct(random.permutation(np.concatenate(points)))
+            self.assertEqual(kerf.Complex(solid).piece_count, parts)
+            self.assertAlmostEqual(solid.volume / (4 / 3 * np.pi * (radii[:parts] ** 3).sum()), 1, delta=0.03)
+
+    def test_a_flat_scan_is_no_solid(self):
+        points = np.random.default_rng(1).random((3000, 3)) * [1, 1, 0]
+        turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+        for given in (points, points @ turn):
+            with self.assertRaisesRegex(kerf.InputError, "has all its points in a plane, which encloses no volume; give a scan from all sides"):
+                kerf.reconstruct(given)
+
     def test_a_scan(self):
         turns = np.arange(3000) * np.pi * (3 - 5 ** 0.5)
         z = 1 - (2 * np.arange(3000) + 1) / 3000
@@ -347,6 +367,39 @@ class Files(unittest.TestCase):
             kerf.load(self.path("bad.ply"))
         with self.assertRaises(TypeError):
             kerf.load(5)
+
+
+def balls(far):
+    """Five balls that overlap, united. Triangles cross once they are rounded, at the origin and, more of them, far from it."""
+    ball = kerf.shapes.sphere(8)
+    places = np.round(np.random.default_rng(1).uniform(-0.7, 0.7, (5, 3)), 1) + [far, 0, 0]
+    return kerf.Solid.repaired(kerf.Mesh(np.concatenate([ball.vertices + place for place in places]),
+                                         np.concatenate([ball.faces + i * len(ball.vertices) for i in range(5)])))
+
+
+class SinglePrecision(unittest.TestCase):
+    def test_rounded(self):
+        for far in (0, 200, 3000):
+            model = balls(far)
+            rounded = model.rounded()
+            self.assertFalse(kerf.Mesh(model.vertices.astype(np.float32), model.faces).check())
+            np.testing.assert_array_equal(rounded.vertices, rounded.vertices.astype(np.float32))
+            self.assertTrue(rounded.check())
+            self.assertAlmostEqual(rounded.volume / model.volume, 1, delta=1e-3)
+
+    def test_an_stl_is_a_solid(self):
+        with tempfile.TemporaryDirectory() as work:
+            path = os.path.join(work, "x.stl")
+            balls(200).save(path)
+            self.assertIsInstance(kerf.load(path), kerf.Solid)
+
+    def test_a_glb_that_crosses_says_so(self):
+        model, block = balls(200), kerf.shapes.block((1, 1, 1), 1)
+        both = kerf.Solid(np.concatenate([model.vertices, block.vertices - [200, 0, 0]]),
+                          np.concatenate([model.faces, block.faces + len(model.vertices)]))
+        with tempfile.TemporaryDirectory() as work:
+            with self.assertWarnsRegex(UserWarning, r"x\.glb: \d+ pairs of triangles cross in single precision; save rounded\(\), or a \.ply"):
+                both.save(os.path.join(work, "x.glb"))
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 import os
 import pickle
 import tempfile
+import types
 import unittest
 import warnings
 from unittest import mock
@@ -11,6 +12,20 @@ import numpy as np
 
 FLAT = np.array([[-2, -2, 0.1], [2, -2, 0.1], [2, 2, 0.1], [-2, 2, 0.1]])
 TWO = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def like_trimesh():
+    """The part of trimesh that to_trimesh() calls, with the signatures of version 4."""
+    class Trimesh:
+        def __init__(self, vertices, faces, process=True, face_attributes=None, vertex_colors=None, vertex_attributes=None, visual=None):
+            self.vertices, self.faces, self.process = vertices, faces, process
+            self.visual = visual or types.SimpleNamespace(kind=None if vertex_colors is None else "vertex", vertex_colors=vertex_colors)
+
+    def textures(uv=None, material=None, image=None, face_materials=None):
+        return types.SimpleNamespace(kind="texture", uv=uv, material=material, face_materials=face_materials)
+
+    material = types.SimpleNamespace(PBRMaterial=dict, MultiMaterial=lambda materials: {"materials": materials})
+    return types.SimpleNamespace(Trimesh=Trimesh, visual=types.SimpleNamespace(TextureVisuals=textures, material=material))
 
 
 class Jobs(unittest.TestCase):
@@ -201,12 +216,70 @@ class Jobs(unittest.TestCase):
         self.assertEqual(len(kerf.score(self.model, pieces=6, seed=3).sheet.faces), len(flat.sheet.faces))
 
     def test_to_trimesh(self):
-        class Trimesh:
-            def __init__(self, vertices, faces, process, face_attributes=None):
-                self.vertices, self.faces, self.process = vertices, faces, process
-
-        with mock.patch.dict("sys.modules", trimesh=mock.Mock(Trimesh=Trimesh)):
+        with mock.patch.dict("sys.modules", trimesh=like_trimesh()):
             self.assertEqual(kerf.Solid.from_trimesh(self.model.to_trimesh()).volume, self.model.volume)
+
+    def test_looks_in_trimesh(self):
+        model = kerf.shapes.block((1, 1, 1), 1)
+        at = model.vertices[model.faces]
+        uv = at[..., :2] + at[..., 2:]  # with seams where z divides corners of one vertex: none, so that nothing is split
+        plain = kerf.Solid(model.vertices, model.faces, uv=uv)
+        seams = kerf.Solid(model.vertices, model.faces, uv=uv + np.arange(len(uv))[:, None, None])
+        colors = kerf.Solid(model.vertices, model.faces, colors=(model.vertices - model.bounds[0]))
+        with mock.patch.dict("sys.modules", trimesh=like_trimesh()):
+            self.assertEqual(len(plain.to_trimesh().vertices), len(model.vertices))
+            for given in (plain, seams, colors):
+                made = given.to_trimesh()
+                again = kerf.Solid.from_trimesh(made)
+                np.testing.assert_array_equal(again.vertices[again.faces], model.vertices[model.faces])
+                if given.uv is not None:
+                    np.testing.assert_array_equal(again.uv, given.uv)
+                else:
+                    np.testing.assert_allclose(again.colors, given.colors, atol=0.5 / 255)
+            self.assertEqual(len(seams.to_trimesh().vertices), 3 * len(model.faces))
+            prop = kerf.load(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../io/cases/gltf/prop.glb"))
+            visual = prop.to_trimesh().visual
+            self.assertEqual([m["name"] for m in visual.material["materials"]], list(prop.group_names))
+            np.testing.assert_array_equal(visual.face_materials, prop.groups)
+
+    def test_materials_of_arrays(self):
+        prop = kerf.load(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../io/cases/gltf/prop.glb"))
+        with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            prop.save(os.path.join(folder, "prop.obj"))
+            again = kerf.Solid(prop.vertices, prop.faces, uv=prop.uv, groups=prop.groups, group_names=prop.group_names,
+                               materials=os.path.join(folder, "prop.mtl"))
+            images = [image for _, image in again._base_colors() if image]
+            self.assertEqual(images, [image for _, image in prop._base_colors() if image])
+            self.assertEqual(len(images), 1)
+
+    def test_capitals(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("STL", "PLY", "Off", "OBJ", "GLB"):
+                path = os.path.join(folder, "p." + ending)
+                self.model.save(path)
+                self.assertAlmostEqual(kerf.load(path).volume, self.model.volume, delta=1e-5 * self.model.volume)
+
+    def test_colours_out_of_range(self):
+        faces, vertices = self.model.faces, self.model.vertices
+        for value in (200.0, -5.0):
+            with self.assertRaisesRegex(kerf.InputError, f"colors: a value of {value}; give floats from 0 to 1, or uint8"):
+                kerf.Mesh(vertices, faces, colors=np.full((len(vertices), 3), value))
+            with self.assertRaisesRegex(kerf.InputError, "colors: a value outside 0 to 1"):
+                kerf.reconstruct(vertices, colors=np.full((len(vertices), 3), value))
+
+    def test_tensors(self):
+        class Tensor:
+            requires_grad, is_cuda = True, False
+
+            def __array__(self, *_):
+                raise RuntimeError("Can't call numpy() on Tensor that requires grad.")
+
+        with self.assertRaisesRegex(kerf.InputError, r"vertices: a tensor that requires a gradient; give its detach\(\).cpu\(\)"):
+            kerf.Mesh(Tensor(), self.model.faces)
+        Tensor.requires_grad, Tensor.is_cuda = False, True
+        with self.assertRaisesRegex(kerf.InputError, r"vertices: a tensor of a GPU; give its cpu\(\)"):
+            kerf.Mesh(Tensor(), self.model.faces)
 
     def test_show(self):
         os.environ["MPLBACKEND"] = "Agg"

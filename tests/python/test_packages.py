@@ -82,6 +82,8 @@ assert np.array_equal(again.uv, model.uv) and np.array_equal(again.groups, model
 assert all(abs(kerf.Solid.from_open3d(p.to_open3d()).volume / p.volume - 1) < 1e-12 for p in model.fracture(4))
 ball = kerf.shapes.sphere(8)
 outwards = ball.vertices / np.linalg.norm(ball.vertices, axis=1)[:, None]
+holes = kerf.Mesh(ball.vertices, ball.faces[9:])
+assert np.array_equal(kerf.Mesh.from_open3d(holes.to_open3d()).faces, holes.faces) and not holes.check().closed
 painted = kerf.Solid(ball.vertices, ball.faces, colors=0.5 + 0.5 * outwards, normals=outwards).to_open3d()
 assert np.abs(np.asarray(painted.vertex_colors) - (0.5 + 0.5 * outwards)).max() < 1e-6
 assert np.abs(np.asarray(painted.vertex_normals) - outwards).max() < 1e-6

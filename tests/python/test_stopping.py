@@ -1,8 +1,10 @@
 """Ctrl-C and progress stop calls that last, which leave everything as it was; threads that are in a call do not harm the exit."""
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -28,7 +30,15 @@ class Stopping(unittest.TestCase):
         cls.wall = kerf.score(cls.model, pieces=30, jagged=0.01, frequency=12, seed=5)
         ball = kerf.shapes.sphere(90)
         cls.twice = kerf.Mesh(np.r_[ball.vertices, ball.vertices + 0.3], np.r_[ball.faces, ball.faces.astype(np.int64) + len(ball.vertices)])
+        cls.large = os.path.join(tempfile.mkdtemp(), "large.ply")  # 8e5 triangles
+        cls.folder = os.path.dirname(cls.large)
+        kerf.shapes.pumpkin(204).save(cls.large)
+        cls.points = np.random.default_rng(7).uniform(*cls.model.bounds, size=(1500000, 3))
         cls.dented = kerf.Mesh(*(lambda m: (m.vertices * (1 + 0.2 * np.sin(9 * m.vertices[:, :1])), m.faces))(kerf.shapes.sphere(100)))
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
 
     def calls(self):
         return {
@@ -43,7 +53,18 @@ class Stopping(unittest.TestCase):
             "fracture": lambda **p: self.model.fracture(50, jagged=0.01, frequency=20, **p),
             "chips": lambda **p: kerf.score(self.model, pieces=20, chips=200, edge_detail=0.002, **p),
             "crack": lambda **p: self.model.crack(self.wall, **p),
+            "nearest": lambda **p: self.fine.nearest(self.points, **p),
+            "contains": lambda **p: self.fine.contains(self.points, **p),
+            "refine": lambda **p: self.model.refine(0.003, **p),
+            "self_union": lambda **p: self.twice.self_union(**p),
             "repaired": lambda **p: kerf.Solid.repaired(self.fine, voxel=0.0012 * np.linalg.norm(np.ptp(self.fine.bounds, axis=0)), **p),
+        }
+
+    def calls_without_progress(self):
+        return {
+            "load": lambda: kerf.load(self.large),
+            "check": lambda: self.fine.check(),
+            "solid": lambda: kerf.Solid(self.fine.vertices, self.fine.faces),
         }
 
     def state(self):
@@ -76,7 +97,7 @@ class Stopping(unittest.TestCase):
         return None
 
     def test_control_c(self):
-        for name, call in self.calls().items():
+        for name, call in (self.calls() | self.calls_without_progress()).items():
             with self.subTest(name):
                 before = self.state()
                 for pause in (0.2, 0.5) + (1.5, 3) * (name in ("wrap", "repaired")):  # in their several phases

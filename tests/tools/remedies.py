@@ -183,6 +183,13 @@ def wrap():
         run(f"kerf-repair {name} {option} -o solid.ply && kerf-info --check solid.ply && kerf-crack solid.ply --jagged 0.1 -o x.ply")
 
 
+@case("; wrap it in a new surface first: kerf-repair --voxel 0.005")
+def wrap_first():
+    pathlib.Path("sheet.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    command = said("kerf-crack sheet.obj --repair --jagged 0.1 -o x.ply", r"wrap it in a new surface first: (kerf-repair --voxel [0-9.]+)\n", 65)[1]
+    run(f"{command} sheet.obj -o solid.ply && kerf-crack solid.ply --repair --jagged 0.1 -o x.ply")
+
+
 @case(" one voxel thick (--open closed closes holes instead)", "(--open sheets leaves holes open)")
 def open_parts():
     box("vessel.obj", ((0, 0, 0), 1), faces=slice(0, 5))

@@ -129,6 +129,8 @@ contract)
   expect 2 "writes a folder, .glb or .usda, not .fbx" kerf-pieces block.ply -o x.fbx
   expect 2 "writes a folder, not .mp4" kerf-sim scene.toml -o x.mp4
   expect 2 "writes .pcd or .ply, not .xyz" kerf-sample block.ply -o x.xyz
+  printf '#usda 1.0\n' >stage.usda
+  expect 65 "stage.usda: is a USD file, which is not read here; save it as glTF" kerf-crack stage.usda --jagged 0.1 -o x.ply
   expect 2 "writes .kerf, not .ply" kerf-update ok.kerf --surface block.ply -o x.ply
   quietly kerf-crack block.ply --front ok.front -o cut.2 && quietly kerf-info -q cut.2 && rm cut.2
   # A front that misses the model is told of, with where both are; a sheet, too. What has been done, with -v.
@@ -254,6 +256,17 @@ repairs)
   awk '/^v / { $2 += 1e6 } { print }' box.obj >far.obj
   expect 65 "far.stl: the model is too far from the origin for single precision; write a .ply" kerf-repair far.obj -o far.stl
   [ ! -e far.stl ] || fail "a partial file"
+  # Bytes of a binary file are no lines of text, and parts that do not touch are pieces.
+  kerf-repair -q box.obj -o bytes.stl && printf 'a\nl 1 2\n' | dd of=bytes.stl conv=notrunc 2>/dev/null
+  [ "$(kerf-info --json bytes.stl | python3 -c 'import json, sys; print(json.load(sys.stdin)["faces"])')" = 12 ] || fail "a binary file with a line of polylines in it"
+  kerf-repair -q apart.obj -o parts.ply || fail "two boxes"
+  expect 1 "parts.ply: consists of 2 parts that do not touch, which are pieces already; ask for more than that" kerf-score parts.ply --pieces 1 -o x.front
+  # Balls that overlap far from the origin cross once they are rounded: an .stl is valid as it is written.
+  kerf-model sphere --frequency 8 -o ball.ply && kerf-repair -q ball.ply -o ball.obj || fail "a ball"
+  awk -v places="0 0.6 -0.5 0.6 -0.3 -0.1 0.5 -0.1 0.1 -0.7 0.4 0.1 -0.2 0.4 -0.3" '/^v / { x[++n] = $2; y[n] = $3; z[n] = $4 } /^f / { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); f[++m] = a[1] " " b[1] " " c[1] } END { count = split(places, at, " "); for (k = 0; k < count; k += 3) for (i = 1; i <= n; ++i) printf "v %.17g %.17g %.17g\n", x[i] + at[k + 1] + 200, y[i] + at[k + 2], z[i] + at[k + 3]; for (k = 0; k < count / 3; ++k) for (j = 1; j <= m; ++j) { split(f[j], a, " "); print "f", a[1] + k * n, a[2] + k * n, a[3] + k * n } }' ball.obj >balls.obj
+  kerf-repair balls.obj -o balls.stl 2>said.txt || fail "kerf-repair of balls: $(cat said.txt)"
+  grep -q '[1-9][0-9]* pairs* of triangles that cross* in single precision divided' said.txt || fail "kerf-repair of balls says: $(cat said.txt)"
+  quietly kerf-info --check -q balls.stl
   # A scan with a hole, closed as the surface around it goes on.
   kerf-model sphere --frequency 8 -o ball.ply && kerf-repair -q ball.ply -o ball.obj || fail "a ball"
   awk '/^v / { z[++n] = $4 } /^f / { split($2, a, "/"); split($3, b, "/"); split($4, c, "/"); if (z[a[1]] > 0.7 && z[b[1]] > 0.7 && z[c[1]] > 0.7) next } { print }' ball.obj >scan.obj

@@ -13,6 +13,8 @@
 #include <tuple>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
+
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/mst_orient_normals.h>
 #include <CGAL/property_map.h>
@@ -97,6 +99,7 @@ class Reconstruction {
     if (points_->size() < least) throw geo::InputError("has fewer than ten points without outliers; give --outliers 0");
     tree_.setInputCloud(points_);
     measure_spacing();
+    require_space();
     if (cloud_.normal.empty()) estimate_normals();
     fit();
     drop_blobs();
@@ -153,6 +156,21 @@ class Reconstruction {
     result_.stats.points = points_->size();
   }
 
+  // Refuses points of one plane, up to the rounding of coordinates, which floats of the box have.
+  void require_space() const {
+    constexpr double thinnest = 0x1p-20;  // sixteen distances of floats
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const auto& p : *points_) mean += p.getVector3fMap().cast<double>() / double(points_->size());
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    for (const auto& p : *points_) {
+      const Eigen::Vector3d d = p.getVector3fMap().cast<double>() - mean;
+      spread += d * d.transpose();
+    }
+    const Eigen::Vector3d squared = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
+    if (squared[0] <= thinnest * thinnest * squared[2])
+      throw geo::InputError("has all its points in a plane, which encloses no volume; give a scan from all sides");
+  }
+
   void measure_spacing() {
     std::vector<float> distance;
     pcl::Indices found;
@@ -165,8 +183,8 @@ class Reconstruction {
     result_.stats.spacing = spacing_ * size_;
   }
 
-  // Neighbours get normals of one sense along a spanning tree. The points farthest out in many
-  // directions then decide whether that is outwards.
+  // Neighbours get normals of one sense along a spanning tree of each connected part. Its points
+  // farthest out in many directions then decide whether that is outwards.
   void estimate_normals() {
     result_.stats.estimated = true;
     pcl::NormalEstimationOMP<pcl::PointNormal, pcl::PointNormal> estimation;
@@ -187,30 +205,43 @@ class Reconstruction {
           finite ? Kernel::Vector_3(n.normal_x, n.normal_y, n.normal_z) : Kernel::Vector_3(0, 0, 1);
       rows.emplace_back(Kernel::Point_3(p.x, p.y, p.z), normal, i);
     }
-    CGAL::mst_orient_normals(rows, neighbors,
-                             CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Row>())
-                                 .normal_map(CGAL::Nth_of_tuple_property_map<1, Row>()));
-    for (const auto& [place, normal, row] : rows) {
-      auto& p = (*points_)[row];
-      p.normal_x = float(normal.x());
-      p.normal_y = float(normal.y());
-      p.normal_z = float(normal.z());
+    // Orients the part with the highest point, and puts all other parts behind it.
+    for (auto part = rows.begin(); part != rows.end();) {
+      const auto count = std::size_t(rows.end() - part);
+      auto end = rows.end();
+      if (count > neighbors) {
+        CGAL::Iterator_range range(part, rows.end());
+        end = CGAL::mst_orient_normals(range, neighbors,
+                                       CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Row>())
+                                           .normal_map(CGAL::Nth_of_tuple_property_map<1, Row>()));
+        if (end == part) end = rows.end();
+      }
+      std::vector<std::size_t> members;
+      for (auto row = part; row != end; ++row) {
+        const auto& [place, normal, index] = *row;
+        auto& p = (*points_)[index];
+        p.normal_x = float(normal.x());
+        p.normal_y = float(normal.y());
+        p.normal_z = float(normal.z());
+        members.push_back(index);
+      }
+      if (points_inwards(members))
+        for (const auto i : members) (*points_)[i].getNormalVector3fMap() *= -1;
+      part = end;
     }
-    if (points_inwards())
-      for (auto& p : *points_) p.getNormalVector3fMap() *= -1;
   }
 
-  bool points_inwards() const {
+  bool points_inwards(const std::vector<std::size_t>& members) const {
     double outwards = 0;
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z) {
           const Eigen::Vector3f direction = Eigen::Vector3i(x, y, z).cast<float>();
           if (direction.isZero()) continue;
-          const auto farthest = std::max_element(points_->begin(), points_->end(), [&](const auto& a, const auto& b) {
-            return a.getVector3fMap().dot(direction) < b.getVector3fMap().dot(direction);
-          });
-          outwards += farthest->getNormalVector3fMap().dot(direction.normalized());
+          const auto reach = [&](std::size_t i) { return (*points_)[i].getVector3fMap().dot(direction); };
+          const auto farthest = std::max_element(members.begin(), members.end(),
+                                                 [&](std::size_t a, std::size_t b) { return reach(a) < reach(b); });
+          outwards += (*points_)[*farthest].getNormalVector3fMap().dot(direction.normalized());
         }
     return outwards < 0;
   }

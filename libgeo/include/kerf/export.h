@@ -61,6 +61,9 @@ PieceSet in_metres(const std::vector<Chunk>& chunks, const std::vector<Bond>& bo
 /// not needed. The nearest single-precision number to the centre of the box, where a coordinate is
 /// farther from the origin than 64 diagonals of the box.
 Vec3 single_precision_offset(const Box3& box);
+/// The pairs of triangles of a piece that cross in single precision relative to its centroid, as
+/// write_glb() writes it. Rounding makes triangles cross that are thinner or closer than floats.
+std::size_t crossings_in_single_precision(const Chunk& chunk);
 /// The box around the meshes of some pieces.
 Box3 bounding_box(const std::vector<Chunk>& chunks);
 

@@ -138,6 +138,23 @@ struct SolidRepairStats {
 /// \throws InputError where triangles bound nothing, else as self_union()
 TriangleMesh repaired_solid(TriangleMesh mesh, const RepairOptions& options = {}, SolidRepairStats* stats = nullptr);
 
+/// Work of rounded_solid().
+struct RoundingStats {
+  std::size_t crossings = 0;  ///< pairs of triangles that crossed after the first rounding
+  int rounds = 0;             ///< of dividing and rounding again; 0: rounding was enough
+};
+
+/// A valid model whose coordinates are in single precision, for files and programs that hold no
+/// more; `source` is empty where triangles were divided. Rounding may make triangles cross or lose
+/// their area: these are divided where they meet, united, and rounded again. Vertices move by a
+/// float's distance at the largest coordinate, in later rounds near crossings by up to 2⁻¹³ of that
+/// coordinate.
+///
+/// \param solid  a plain mesh, valid in double precision
+/// \param stats  where given, receives the counts
+/// \throws GeometryError where it is no solid after ten rounds, else as self_union()
+TriangleMesh rounded_solid(const TriangleMesh& solid, RoundingStats* stats = nullptr);
+
 /// A new surface around closed parts, which may intersect themselves and each other, and open
 /// sheets, as take_sheets() tells them apart. Around closed parts it is the zero level of their
 /// distance field, which also rounds edges by the length of a voxel. A sheet becomes a plate of the

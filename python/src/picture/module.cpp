@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "../apart.h"
 #include "../arrays.h"
 #include "../gil.h"
 #include "../mesh.h"
@@ -34,7 +35,8 @@ view::Look look_from(const py::dict& given) {
 
 py::array picture(const Meshes& surfaces, const Meshes& obstacles, const py::dict& nodes, const py::dict& look,
                   const py::dict& view, py::object progress) {
-  Drawing drawing;
+  const auto shared = std::make_shared<Drawing>();  // the thread that draws may outlast this call
+  Drawing& drawing = *shared;
   for (const auto& mesh : surfaces) drawing.surfaces.push_back(&mesh->mesh);
   for (const auto& mesh : obstacles) drawing.obstacles.push_back(&mesh->mesh);
   drawing.look = look_from(look);
@@ -53,8 +55,10 @@ py::array picture(const Meshes& surfaces, const Meshes& obstacles, const py::dic
   drawing.camera.zoom = view["zoom"].cast<double>();
   drawing.camera.y_up = view["y_up"].cast<bool>();
   drawing.options.samples = view["samples"].cast<int>();
-  ProgressReport report(std::move(progress));
-  auto bytes = report.run([&](const geo::Progress& tell) { return view::rgb_bytes(draw(drawing, tell)); });
+  const auto work = [shared, surfaces, obstacles](const geo::Progress& own) {
+    return view::rgb_bytes(draw(*shared, own));
+  };
+  auto bytes = stoppable("render", work, std::move(progress));
   using Pixels = std::vector<std::array<std::uint8_t, 3>>;
   Pixels pixels(bytes.size() / 3);
   std::copy(bytes.begin(), bytes.end(), pixels.empty() ? nullptr : pixels[0].data());
@@ -80,5 +84,6 @@ PYBIND11_MODULE(_picture, module) {
              py::arg("look"), py::arg("view"), py::arg("progress"),
              "Draws meshes and nodes; see kerf/_pictures.py. Returns (h, w, 3) uint8.");
   module.def("png", &kerf_python::png, py::arg("pixels"), "A PNG of (h, w, 3) bytes, sRGB.");
+  kerf_python::wait_for_threads_at_exit();
   kerf_python::stop_calls_at_exit();
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/elementary.h"
 #include "contact/motion/bounded_motion.h"
 #include "contact/response/impulse_response.h"
 #include "contact/response/penalty_assembly.h"
@@ -93,19 +94,20 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
   step.penalty = spare_penalty_ ? std::move(spare_penalty_) : std::make_unique<SelfContactPenalty>(penalty_options);
   step.penalty->restart(penalty_options);
   near_.invalidate();
-  assemble_penalty({.body = body,
-                    .solid = solid,
-                    .weights = weights_,
-                    .displacement = state.displacement,
-                    .free = free,
-                    .targets = targets,
-                    .mean_targets = mean_targets,
-                    .free_targets = free_targets,
-                    .dt = dt,
-                    .stopping = pace.stopping > 0 ? pace.stopping : dt,
-                    .made_good = 1 - std::pow(1 - deficit_share, pace.whole_step > 0 ? dt / pace.whole_step : 1),
-                    .gap = gap()},
-                   surface_, near_, *step.penalty);
+  assemble_penalty(
+      {.body = body,
+       .solid = solid,
+       .weights = weights_,
+       .displacement = state.displacement,
+       .free = free,
+       .targets = targets,
+       .mean_targets = mean_targets,
+       .free_targets = free_targets,
+       .dt = dt,
+       .stopping = pace.stopping > 0 ? pace.stopping : dt,
+       .made_good = 1 - exponential(logarithm(1 - deficit_share) * (pace.whole_step > 0 ? dt / pace.whole_step : 1)),
+       .gap = gap()},
+      surface_, near_, *step.penalty);
   return step;
 }
 

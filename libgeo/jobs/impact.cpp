@@ -3,7 +3,7 @@
 //
 // The cells of one half alone are those of all sites, as far as the half reaches. So a part is
 // divided by its own sites, whose walls pass through it, and need not end on the walls before. They
-// would meet those along edges that are there already, but for rounding: so the sites move a little.
+// would meet those along edges that are there already, but for rounding: so sites move a little.
 #include "kerf/impact.h"
 
 #include <algorithm>

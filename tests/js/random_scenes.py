@@ -1,4 +1,4 @@
-"""random_scenes.py COUNT [SEED]: writes random-0.toml and on: a model of this folder falls, turns, and is cut by a turning blade."""
+"""random_scenes.py COUNT [SEED]: writes random-0.toml and on: a model of this folder falls, turns, and is cut by a turning blade, or broken."""
 import random
 import sys
 
@@ -34,7 +34,15 @@ frames = 8
 frame_rate = 24
 step = 0.021
 accuracy = 0.01
-[[blade]]
+''')
+        if number % 2:
+            out.write(f"""[[blow]]
+time = {rng.uniform(0, 0.2)}
+point = [{rng.uniform(-1, 1)}, {rng.uniform(-1, 1)}, {rng.uniform(0, 2)}]
+cells = {rng.randrange(4, 12)}
+""")
+            continue
+        out.write(f'''[[blade]]
 points = [[-3, 0.011, 0], [0, {rng.uniform(-0.03, 0.03)}, 0], [3, 0.023, 0]]
 divide = 12
 keys = [

@@ -332,7 +332,7 @@ class Hands(unittest.TestCase):
     def test_blows(self):
         scene = SCENE.split("[[blade]]")[0]  # a blade in the body would be in the way
         def pieces_of(run):
-            return run.body.complex.piece_count
+            return run.body.complex().piece_count
 
         dice = random.Random(dice_seed := random.randrange(1 << 30))
         with tempfile.TemporaryDirectory() as name:

@@ -7,6 +7,7 @@
 #include <kerf/body_file.h>
 #include <kerf/error.h>
 #include <kerf/files.h>
+#include <kerf/vectors.h>
 #include "live/bare_model.h"
 #include "live/browser.h"
 #include "live/loop.h"
@@ -25,7 +26,7 @@ struct Command {
   std::vector<std::string> settings;
   int port = 0, nodes = 600;
   double rate = 60, linger = 30;
-  bool no_browser = false, no_blades = false;
+  bool portable = false, no_browser = false, no_blades = false;
 };
 
 // Makes a run of a scene or model, and warns of what may not be as meant.
@@ -75,11 +76,10 @@ void require_options(const Command& command) {
 }
 
 bool has_work(const live::Session& session) {
-  if (session.blows() > 0) return true;
   const geo::Scene recording = session.recording();
   const geo::Scene& original = session.original();
   return recording.blades.size() > original.blades.size() || recording.pulls.size() > original.pulls.size() ||
-         recording.grips.size() > original.grips.size();
+         recording.grips.size() > original.grips.size() || recording.blows.size() > original.blows.size();
 }
 
 // Where to write what hands did; empty: nowhere. A run that ended without being asked to keeps
@@ -92,13 +92,7 @@ std::string record_path(const Command& command, const live::Shown& shown, live::
   return path;
 }
 
-// After a blow, which no scene has, the body is kept in place of the recording.
 void record(const live::Session& session, const std::string& path, const tool::Tool& t) {
-  if (session.blows() > 0) {
-    const std::string body = fs::path(path).replace_extension(".kerf").string();
-    geo::write_all(body, [&](std::ostream& out) { geo::write_body(out, session.run().body()); });
-    return t.say("kerf-live: a scene cannot hold a blow; the body is kept in " + body);
-  }
   const std::string folder = fs::absolute(path).parent_path().string();
   geo::write_all(path, [&](std::ostream& out) { geo::write_scene(out, session.recording(), folder); });
   t.say("kerf-live: " + tool::counted(static_cast<std::size_t>(session.run().state().frame), "frame") +
@@ -150,7 +144,11 @@ int main(int argc, char** argv) {
            "Override a key of the scene, as KEY=VALUE; entries of lists by number, as blade.0.divide");
   t.option("--nodes", command.nodes, "Nodes of a model that comes without a scene");
   t.choice("--up", command.up, {"y", "z"}, "Vertical axis of a model that comes without a scene");
+  t.flag("--portable", command.portable, "Vectors of two numbers, without fused products, as kerf-sim --portable");
   t.flag("--no-browser", command.no_browser, "Open no browser");
   t.flag("--no-blades", command.no_blades, "Leave out the blades of the scene: only hands cut");
-  return t.run(argc, argv, [&] { serve(command, t); });
+  return t.run(argc, argv, [&] {
+    if (command.portable) geo::set_vectors(geo::Vectors::portable);
+    serve(command, t);
+  });
 }

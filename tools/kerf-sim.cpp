@@ -14,6 +14,7 @@
 #include <kerf/progress.h>
 #include <kerf/simulation.h>
 #include <kerf/solid.h>
+#include <kerf/vectors.h>
 #include "model.h"
 #include "sim/frame_writer.h"
 #include "sim/review.h"
@@ -32,6 +33,7 @@ struct Command {
   int frames = 0;
   bool resume = false;
   bool strict = false;
+  bool portable = false;
 };
 
 // Estimates the remaining time from the seconds of the last frames.
@@ -261,9 +263,15 @@ int main(int argc, char** argv) {
   t.option("--set", command.settings,
            "Override a key of the scene, as KEY=VALUE; entries of lists by number, as blade.0.divide");
   t.flag("--resume", command.resume, "Continue from the last checkpoint in the output folder; start where it has none");
+  t.flag("--portable", command.portable,
+         "Vectors of two numbers, without fused products: the bytes of any x86 processor and of the page without a "
+         "server");
   t.flag("--strict", command.strict,
          "Fail, with exit code 1, where the run is not as asked for: crumbs, crossings, refused steps, thin material, "
          "lag, energy from nothing");
   t.output("Folder of the run", {"a folder"});
-  return t.run(argc, argv, [&] { simulate(command, t); });
+  return t.run(argc, argv, [&] {
+    if (command.portable) geo::set_vectors(geo::Vectors::portable);
+    simulate(command, t);
+  });
 }

@@ -32,15 +32,15 @@ extern "C" {
 
 typedef enum kerf_status {
   KERF_OK = 0,
-  KERF_INPUT = 1,       /* data or file is unusable: open mesh, malformed file, value out of range */
-  KERF_GEOMETRY = 2,    /* a step failed on valid input, nothing changed */
-  KERF_OUTPUT = 3,      /* a file cannot be written */
-  KERF_STOPPED = 4,     /* the callback stopped the call */
-  KERF_HANDLE = 5,      /* a handle is null, of another kind, or freed */
-  KERF_ARGUMENT = 6,    /* a pointer is null, a length is wrong, a number is not finite */
-  KERF_BUSY = 7,        /* another call changes, or reads, this handle now */
-  KERF_MEMORY = 8,      /* there is not enough memory */
-  KERF_INTERNAL = 9     /* a fault of Kerf: please report it */
+  KERF_INPUT = 1,    /* data or file is unusable: open mesh, malformed file, value out of range */
+  KERF_GEOMETRY = 2, /* a step failed on valid input, nothing changed */
+  KERF_OUTPUT = 3,   /* a file cannot be written */
+  KERF_STOPPED = 4,  /* the callback stopped the call */
+  KERF_HANDLE = 5,   /* a handle is null, of another kind, or freed */
+  KERF_ARGUMENT = 6, /* a pointer is null, a length is wrong, a number is not finite */
+  KERF_BUSY = 7,     /* another call changes, or reads, this handle now */
+  KERF_MEMORY = 8,   /* there is not enough memory */
+  KERF_INTERNAL = 9  /* a fault of Kerf: please report it */
 } kerf_status;
 
 /* "1.0.0"; never null. */
@@ -55,6 +55,9 @@ KERF_API const char* kerf_last_message(void);
 KERF_API const char* kerf_status_name(kerf_status status);
 /* Threads of all later calls; 0: one for each core. Results do not depend on it. */
 KERF_API kerf_status kerf_set_threads(int32_t count);
+/* 1: vectors without fused products, for the bytes of any x86 processor and of WebAssembly in later
+ * steps of simulations; 0: the widest vectors. Call it while no other call runs. */
+KERF_API kerf_status kerf_set_portable(int32_t portable);
 
 /* Receives the phase, the work done and the total work. Returns 0 to stop the call, which then
  * returns KERF_STOPPED and changes nothing. May be null. Some calls report from other threads. */
@@ -183,11 +186,11 @@ typedef struct kerf_score_options {
   double frequency;             /* of rough walls, per diagonal */
   double depth;                 /* below 1: walls reach only so deep */
   int32_t attempts;
-  int32_t chips;                /* small pieces that break off edges, beside `pieces` */
-  double chip_size;             /* their length, of the cube root of the mean piece's volume */
-  double edge_detail;           /* amplitude of finer bumps near the skin, of the diagonal; 0: none */
-  double edge_width;            /* their depth, of the diagonal */
-  const double* density;        /* where cells are many: a value of at least 0 for each vertex; or null */
+  int32_t chips;         /* small pieces that break off edges, beside `pieces` */
+  double chip_size;      /* their length, of the cube root of the mean piece's volume */
+  double edge_detail;    /* amplitude of finer bumps near the skin, of the diagonal; 0: none */
+  double edge_width;     /* their depth, of the diagonal */
+  const double* density; /* where cells are many: a value of at least 0 for each vertex; or null */
   size_t density_length;
   const uint8_t* image; /* brightness, rows from above, `image_width` bytes each; or null: none */
   int32_t image_width, image_height;
@@ -221,13 +224,13 @@ KERF_API kerf_status kerf_complex_roughen(kerf_complex complex, double amplitude
                                           kerf_progress progress, void* user);
 /* Collapses edges where a surface moves by at most `deviation`, a fraction of the diagonal, until
  * `faces` are left; 0: as many as possible. */
-KERF_API kerf_status kerf_complex_decimate(kerf_complex complex, double deviation, size_t faces,
-                                           kerf_progress progress, void* user);
+KERF_API kerf_status kerf_complex_decimate(kerf_complex complex, double deviation, size_t faces, kerf_progress progress,
+                                           void* user);
 
 /* A front: a polyline that cuts on its way. Its complex lives as long as it does. */
 typedef struct kerf_front_s* kerf_front;
-KERF_API kerf_status kerf_front_begin(kerf_complex complex, const double* points, size_t points_length,
-                                      int32_t closed, kerf_front* front);
+KERF_API kerf_status kerf_front_begin(kerf_complex complex, const double* points, size_t points_length, int32_t closed,
+                                      kerf_front* front);
 /* Moves it to `points`, as many as it has. `new_faces` receives the crack faces made, or is null. */
 KERF_API kerf_status kerf_front_advance(kerf_front front, const double* points, size_t points_length,
                                         size_t* new_faces);
@@ -343,8 +346,7 @@ KERF_API kerf_status kerf_simulation_positions(kerf_simulation simulation, doubl
 KERF_API kerf_status kerf_simulation_velocities(kerf_simulation simulation, double* points, size_t length,
                                                 size_t* needed);
 /* Von Mises stress of each node, Pa. */
-KERF_API kerf_status kerf_simulation_stress(kerf_simulation simulation, double* values, size_t length,
-                                            size_t* needed);
+KERF_API kerf_status kerf_simulation_stress(kerf_simulation simulation, double* values, size_t length, size_t* needed);
 /* The deformed surface with the model's attributes, except normals. */
 KERF_API kerf_status kerf_simulation_surface(kerf_simulation simulation, kerf_mesh* surface);
 

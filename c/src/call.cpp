@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "kerf/parallel.h"
+#include "kerf/vectors.h"
 
 namespace kerf_c {
 namespace {
@@ -121,6 +122,10 @@ kerf_status kerf_set_threads(int32_t count) {
     number_of(count, 0, 1024, "count");
     geo::set_threads(count);
   });
+}
+
+kerf_status kerf_set_portable(int32_t portable) {
+  return call([&] { geo::set_vectors(flag_of(portable, "portable") ? geo::Vectors::portable : geo::Vectors::widest); });
 }
 
 kerf_status kerf_free(void* handle) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/sine.h"
+#include "base/elementary.h"
 #include "kerf/vec.h"
 
 namespace geo {

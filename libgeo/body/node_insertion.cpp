@@ -38,6 +38,8 @@ namespace {
 // Volumes are given in multiples of 2⁻⁴⁰ of the largest: no sum is rounded.
 double volume_unit(double largest) { return std::ldexp(1.0, std::ilogb(largest) - 40); }
 
+double cube_of(double x) { return x * x * x; }
+
 // Each giver keeps (1 − α) of its volume: α = c s³ / (V + c s³) for the volume V of all givers and
 // their mean c of volume over cubed spacing, at most a half. So volumes in proportion to the cubes
 // of spacings stay so.
@@ -46,10 +48,10 @@ double take_volume(NodeSet& nodes, double spacing, std::span<const std::uint32_t
   for (const auto j : givers) {
     const double v = nodes.volume[j];
     sum += v;
-    density += v / std::pow(nodes.spacing[j], 3);
+    density += v / cube_of(nodes.spacing[j]);
     largest = std::max(largest, v);
   }
-  const double wanted = std::pow(spacing, 3) * density / double(givers.size()),
+  const double wanted = cube_of(spacing) * density / double(givers.size()),
                share = std::min(0.5, wanted / (sum + wanted)), unit = volume_unit(largest);
   double taken = 0;
   for (const auto j : givers) {
@@ -250,7 +252,7 @@ namespace {
 // Gives node i its fair share of the volume of it and its neighbours, if it has less than half of
 // that. Returns whether it had.
 bool take_fair_share(NodeSet& nodes, const VisibilityGraph& graph, NodeId i) {
-  const auto cube = [&](std::uint32_t j) { return std::pow(nodes.spacing[j], 3); };
+  const auto cube = [&](std::uint32_t j) { return cube_of(nodes.spacing[j]); };
   double volume = nodes.volume[i.index()], cubes = cube(i.value), largest = volume;
   const auto neighbors = graph.neighbors(nodes, i);
   for (const auto& n : neighbors) {

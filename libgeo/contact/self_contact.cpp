@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/elementary.h"
 #include "contact/motion/bounded_motion.h"
 #include "contact/response/impulse_response.h"
 #include "contact/response/penalty_assembly.h"
@@ -107,19 +108,20 @@ ContactStep SelfContact::begin_step(const Body& body, const Solid& solid, const 
   step.penalty->restart(penalty_options);
   step.still = still_vertices(environment.asleep);
   near_.select(moving_triangles(surface().triangles, step.still));
-  assemble_penalty({.body = body,
-                    .solid = solid,
-                    .weights = weights_,
-                    .displacement = state.displacement,
-                    .free = free,
-                    .targets = targets,
-                    .mean_targets = mean_targets,
-                    .free_targets = free_targets,
-                    .dt = dt,
-                    .stopping = pace.stopping > 0 ? pace.stopping : dt,
-                    .made_good = 1 - std::pow(1 - deficit_share, pace.whole_step > 0 ? dt / pace.whole_step : 1),
-                    .gap = gap()},
-                   surface_, near_, *step.penalty);
+  assemble_penalty(
+      {.body = body,
+       .solid = solid,
+       .weights = weights_,
+       .displacement = state.displacement,
+       .free = free,
+       .targets = targets,
+       .mean_targets = mean_targets,
+       .free_targets = free_targets,
+       .dt = dt,
+       .stopping = pace.stopping > 0 ? pace.stopping : dt,
+       .made_good = 1 - exponential(logarithm(1 - deficit_share) * (pace.whole_step > 0 ? dt / pace.whole_step : 1)),
+       .gap = gap()},
+      surface_, near_, *step.penalty);
   return step;
 }
 

@@ -213,6 +213,16 @@ void read_pull(TomlTable& t, Scene& s, Files& files) {
   s.pulls.push_back(std::move(pull));
 }
 
+void read_blow(TomlTable& t, Scene& s) {
+  Blow blow;
+  if (!t.find("point")) t.missing("point", "where it hits, in the world");
+  t.get("time", blow.time, -1e9, 1e9);
+  t.get("point", blow.point);
+  t.get("cells", blow.cells, 2, 1000);
+  if (!s.blows.empty() && blow.time < s.blows.back().time) t.fail("blows must be ascending in time");
+  s.blows.push_back(blow);
+}
+
 // Corners of a box.
 std::pair<Vec3, Vec3> read_box(TomlTable& t) {
   const auto* box = t.find("box");
@@ -390,6 +400,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   });
   top.list("blade", [&](TomlTable& t) { read_blade(t, s, files); });
   top.list("pull", [&](TomlTable& t) { read_pull(t, s, files); });
+  top.list("blow", [&](TomlTable& t) { read_blow(t, s); });
   top.list("load", [&](TomlTable& t) { read_load(t, s); });
   top.list("support", [&](TomlTable& t) { read_support(t, s, files); });
   top.list("change", [&](TomlTable& t) { read_change(t, s); });

@@ -75,6 +75,7 @@ class SceneWriter {
   void grip(const Grip& g);
   void blade(const Blade& b);
   void pull(const Pull& p);
+  void blow(const Blow& b);
   void load(const Load& l);
   void support(const Support& s);
   void obstacle(const SceneObstacle& o);
@@ -197,6 +198,13 @@ void SceneWriter::pull(const Pull& p) {
   keys(p.motion);
 }
 
+void SceneWriter::blow(const Blow& b) {
+  table("[[blow]]");
+  key("time", b.time);
+  key("point", b.point);
+  whole("cells", static_cast<std::uint64_t>(b.cells));
+}
+
 void SceneWriter::load(const Load& l) {
   table("[[load]]");
   key("box", row({l.lo.x(), l.lo.y(), l.lo.z(), l.hi.x(), l.hi.y(), l.hi.z()}));
@@ -288,6 +296,7 @@ void SceneWriter::write(const Scene& s) {
   for (const SceneObstacle& o : s.obstacles) obstacle(o);
   for (const Blade& b : s.blades) blade(b);
   for (const Pull& p : s.pulls) pull(p);
+  for (const Blow& b : s.blows) blow(b);
   for (const Load& l : s.loads) load(l);
   for (const Support& support : s.supports) this->support(support);
   for (const SceneChange& c : s.changes) change(c);

@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-#include "base/cube_root.h"
+#include "base/elementary.h"
 #include "base/random.h"
 #include "score/voronoi.h"
 #include "score/walls.h"

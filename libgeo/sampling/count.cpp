@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "base/cube_root.h"
+#include "base/elementary.h"
 #include "base/random.h"
 #include "kerf/error.h"
 #include "kerf/progress.h"
@@ -50,11 +50,11 @@ NodeSelection select_count(const LeafLists& lists, std::size_t count, float sure
 class CountCurve {
  public:
   void add(double spacing, double count) {
-    points_.insert(std::upper_bound(points_.begin(), points_.end(), std::pair{std::log(spacing), 0.0}),
-                   {std::log(spacing), std::log(count + 0.5)});
+    points_.insert(std::upper_bound(points_.begin(), points_.end(), std::pair{logarithm(spacing), 0.0}),
+                   {logarithm(spacing), logarithm(count + 0.5)});
   }
   double guess(double count) const {
-    const double y = std::log(count + 0.5);
+    const double y = logarithm(count + 0.5);
     std::size_t i = 0;  // the first with fewer nodes
     while (i < points_.size() && points_[i].second > y) ++i;
     const bool between = i > 0 && i < points_.size();
@@ -74,7 +74,7 @@ class CountCurve {
       const double lo = points_[a].first, hi = points_[b].first;
       x = std::clamp(x, lo + 0.1 * (hi - lo), hi - 0.1 * (hi - lo));
     }
-    return std::exp(x);
+    return exponential(x);
   }
 
  private:

@@ -22,7 +22,10 @@ void share_volume(NodeSet& nodes, const LeafIndex& index, const Lattice& lattice
                   const std::vector<Leaf>& orphans, double volume) {
   double exact = 0, estimate = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) (whole[i] ? exact : estimate) += nodes.volume[i];
-  const auto volume_of = [&](const Leaf& leaf) { return leaf.share * std::pow(lattice.edge(leaf.cell.level), 3); };
+  const auto volume_of = [&](const Leaf& leaf) {
+    const double edge = lattice.edge(leaf.cell.level);
+    return leaf.share * (edge * edge * edge);
+  };
   for (const Leaf& leaf : orphans) estimate += volume_of(leaf);
   const bool cut_only = estimate > 0 && exact < volume;
   const double scale = cut_only ? (volume - exact) / estimate : volume / (exact + estimate);

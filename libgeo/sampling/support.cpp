@@ -2,6 +2,7 @@
 // twelve nearest nodes; d_12 is the distance of the twelfth, infinite if fewer are near.
 #include "sampling/support.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kerf/parallel.h"
@@ -33,6 +34,7 @@ void find_dozen(const NodeSet& nodes, const LeafIndex& leaves, std::size_t i, st
   if (near.size() <= dozen) return;
   std::nth_element(near.begin(), near.begin() + dozen - 1, near.end());
   near.resize(dozen);
+  std::sort(near.begin(), near.end());  // sums in one order, whatever the standard library
 }
 
 }  // namespace

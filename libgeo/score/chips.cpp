@@ -12,9 +12,8 @@
 #include <optional>
 #include <tuple>
 
-#include "base/cube_root.h"
+#include "base/elementary.h"
 #include "base/random.h"
-#include "base/sine.h"
 #include "base/union_find.h"
 #include "geometry/distance.h"
 #include "kerf/crack.h"

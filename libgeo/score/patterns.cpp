@@ -12,9 +12,8 @@
 
 #include <Eigen/LU>
 
-#include "base/cube_root.h"
+#include "base/elementary.h"
 #include "base/random.h"
-#include "base/sine.h"
 #include "kerf/error.h"
 #include "score/voronoi.h"
 #include "score/walls.h"

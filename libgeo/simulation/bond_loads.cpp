@@ -112,7 +112,7 @@ struct BondLoads::NearPoint {
 
 double BondLoad::effective(double friction) const {
   const double tension = normal + bending;
-  if (tension > 0) return std::hypot(tension, shear);
+  if (tension > 0) return std::sqrt(tension * tension + shear * shear);
   return std::max(0.0, shear + friction * tension);
 }
 

@@ -11,10 +11,14 @@ CutSolid::CutSolid(const Body& body, State& motion, Materials materials)
 }
 
 void CutSolid::restart(Materials materials) {
-  if (std::exchange(has_followed_, false))
-    solid_ = Solid(body_, std::move(materials));
-  else
-    solid_.set_materials(materials);
+  if (has_followed_) return rebuild(std::move(materials));
+  solid_.set_materials(materials);
+  solid_.set_rotations(motion_);
+}
+
+void CutSolid::rebuild(Materials materials) {
+  has_followed_ = false;
+  solid_ = Solid(body_, std::move(materials));
   solid_.set_rotations(motion_);
 }
 

@@ -17,6 +17,8 @@ class CutSolid {
   /// Continues with the body and motion as they are now, which others have replaced by those of a
   /// checkpoint. The discretisation stays if nothing was cut since it was made.
   void restart(Materials materials);
+  /// Likewise, for another body.
+  void rebuild(Materials materials);
   /// Whether a body with this number of nodes fits; see restart().
   bool fits(std::size_t nodes) const { return has_followed_ || solid_.size() == nodes; }
 

@@ -4,10 +4,12 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/rotation.h"
+
 namespace geo {
 
 Motion::Key key_at(double time, const Pose& pose) {
-  const Eigen::AngleAxisd turn(pose.rotation);
+  const Eigen::AngleAxisd turn = axis_and_angle(pose.rotation);
   return {.time = time,
           .position = pose.position,
           .axis = turn.angle() == 0 ? Vec3(Vec3::UnitZ()) : turn.axis(),

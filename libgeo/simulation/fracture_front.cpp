@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/elementary.h"
 #include "body/locate.h"
 #include "geometry/predicates.h"
 #include "kerf/error.h"
@@ -243,7 +244,7 @@ void FrontPlanner::detour_around_edge(std::size_t end, std::vector<ExtraPoint>& 
   for (int k = 1; k <= 3 && !seen; ++k)
     for (int turn = 0; turn < 4 && !seen; ++turn) {
       const double angle = turn * std::numbers::pi / 8;
-      const Vec3 trial = from + k * interval_ * (std::cos(angle) * ahead + std::sin(angle) * away);
+      const Vec3 trial = from + k * interval_ * (cosine(angle) * ahead + sine(angle) * away);
       seen = !is_blocked(complex_, from, trial) && !is_blocked(complex_, trial, to);
       if (seen) corner = trial;
     }
@@ -401,7 +402,7 @@ std::pair<GrowingFront, FrontPlan> plan_flaw(const Complex& complex, const Vec3&
   FrontPlan plan;
   for (std::uint32_t i = 0; i < count; ++i) {
     const double angle = 2 * std::numbers::pi * i / count, reach = (1 + ligament) * radius;
-    const Vec3 d = std::cos(angle) * x + std::sin(angle) * y;
+    const Vec3 d = cosine(angle) * x + sine(angle) * y;
     const double surface = distance_to_face(complex, center, d, reach);
     plan.from.push_back(i);
     plan.next.push_back(center + (surface <= reach ? surface + overhang * radius : radius) * d);

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/elementary.h"
 #include "body/incremental_cache.h"
+#include "geometry/rotation.h"
 #include "kerf/parallel.h"
 #include "simulation/fracture_ligaments.h"
 #include "simulation/fracture_start.h"
@@ -84,7 +86,7 @@ FrontLoad load_on(const FractureInput& in, const GrowingFront& g) {
       if (!resolved[i]) continue;
       const auto [angle, stress] = field.strongest();
       if (!(stress > 0)) continue;
-      const Vec3 across = std::cos(angle) * frame[i].normal - std::sin(angle) * frame[i].ahead;
+      const Vec3 across = cosine(angle) * frame[i].normal - sine(angle) * frame[i].ahead;
       separation[i] = stress /
                       resistance(in.options.at_node(in.body_index, field.node), in.options.seed, in.body, frame[i].at,
                                  field.support) *
@@ -138,7 +140,7 @@ bool branches(const FractureOptions& options, const GrowingFront& g, const Front
 // Turns the directions of growth about the front by an angle in radians.
 void turn(FrontLoad& load, const GrowingFront& g, double angle) {
   for (std::size_t i = 0; i < g.size(); ++i)
-    load.direction[i] = Eigen::AngleAxisd(angle, tip_frame(g, i).along()) * load.direction[i];
+    load.direction[i] = rotation_about(tip_frame(g, i).along(), angle) * load.direction[i];
 }
 
 // The growth that each point of a front owes after this step, and the spacing of the nodes there.

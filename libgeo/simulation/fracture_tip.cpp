@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/elementary.h"
 #include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "geometry/nearest_rotation.h"
@@ -17,7 +18,7 @@ namespace geo {
 // Williams 1957, plane strain: κ = 3 − 4 ν, scale √(r / 2π) / (2 μ). Modes by column: I opening, II
 // in-plane shear, III out-of-plane shear.
 Mat3 mode_displacement(const Material& m, double r, double angle) {
-  const double c = std::cos(angle / 2), s = std::sin(angle / 2), kappa = 3 - 4 * m.poisson,
+  const double c = cosine(angle / 2), s = sine(angle / 2), kappa = 3 - 4 * m.poisson,
                scale = std::sqrt(r / (2 * std::numbers::pi)) / (2 * m.mu());
   Mat3 u;
   u.col(0) = scale * Vec3(c * (kappa - 1 + 2 * s * s), s * (kappa + 1 - 2 * c * c), 0);
@@ -28,7 +29,7 @@ Mat3 mode_displacement(const Material& m, double r, double angle) {
 
 // u = √r f(θ) has the derivative cos θ f / (2 √r) − sin θ f′ / √r ahead.
 Mat3 mode_slope(const Material& m, double r, double angle) {
-  const double c = std::cos(angle / 2), s = std::sin(angle / 2), kappa = 3 - 4 * m.poisson;
+  const double c = cosine(angle / 2), s = sine(angle / 2), kappa = 3 - 4 * m.poisson;
   Mat3 turned;  // f′, in the scale of mode_displacement(m, 1, angle)
   turned.col(0) =
       Vec3(-s / 2 * (kappa - 1 + 2 * s * s) + 2 * s * c * c, c / 2 * (kappa + 1 - 2 * c * c) + 2 * s * s * c, 0);
@@ -36,12 +37,12 @@ Mat3 mode_slope(const Material& m, double r, double angle) {
       Vec3(c / 2 * (kappa + 1 + 2 * c * c) - 2 * s * s * c, s / 2 * (kappa - 1 - 2 * s * s) + 2 * s * c * c, 0);
   turned.col(2) = Vec3(0, 0, 2 * c);
   turned *= std::sqrt(1 / (2 * std::numbers::pi)) / (2 * m.mu());
-  return (0.5 * std::cos(angle) * mode_displacement(m, 1, angle) - std::sin(angle) * turned) / std::sqrt(r);
+  return (0.5 * cosine(angle) * mode_displacement(m, 1, angle) - sine(angle) * turned) / std::sqrt(r);
 }
 
 // The same fields' stress, f(angle) / √(2 π r); σ_zz = ν (σ_xx + σ_yy) in plane strain.
 Mat3 mode_stress(double poisson, int mode, double r, double angle) {
-  const double c = std::cos(angle / 2), s = std::sin(angle / 2), c3 = std::cos(1.5 * angle), s3 = std::sin(1.5 * angle);
+  const double c = cosine(angle / 2), s = sine(angle / 2), c3 = cosine(1.5 * angle), s3 = sine(1.5 * angle);
   double xx = 0, yy = 0, xy = 0, xz = 0, yz = 0;
   if (mode == 0) {
     xx = c * (1 - s * s3);
@@ -64,7 +65,7 @@ Mat3 mode_stress(double poisson, int mode, double r, double angle) {
 
 // Mode III has no hoop stress. Poisson's ratio affects only σ_zz, which is not used: 0 is passed.
 double TipField::hoop(double angle) const {
-  const Vec3 across(-std::sin(angle), std::cos(angle), 0);
+  const Vec3 across(-sine(angle), cosine(angle), 0);
   double sum = across.dot(uniform * across);
   for (int mode = 0; mode < 2; ++mode) sum += k[mode] * across.dot(mode_stress(0, mode, support / 4, angle) * across);
   return sum;
@@ -145,8 +146,7 @@ Eigen::VectorXd fit(const Body& body, const std::vector<Vec3>& v, const Material
     for (int c = 0; c < 3; ++c) a.block<3, 3>(3 * j, 3 * c) = w * x[c] / near.support * Mat3::Identity();
     a.block<3, 3>(3 * j, 9) = w * Mat3::Identity();
     if (modes > 0)
-      a.block<3, 3>(3 * j, 12) =
-          w * scale * mode_displacement(material, std::hypot(x.x(), x.y()), std::atan2(x.y(), x.x()));
+      a.block<3, 3>(3 * j, 12) = w * scale * mode_displacement(material, x.head<2>().norm(), angle_of(x.y(), x.x()));
     b.segment<3>(3 * j) = w * (frame.transpose() * v[static_cast<std::size_t>(j)]);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;

@@ -67,7 +67,7 @@ void glue_cells(const GluedBody& to, const FractureOptions& fracture, std::int32
                     {.amplitude = breakage.jagged, .edge = to.spacing / skin.box().diagonal(), .seed = pattern.seed});
     try {
       const std::vector<double> volumes = glue(skin, walls, crack, complex, glued);
-      join_small_cells(glued, first, volumes, std::pow(to.spacing, 3));
+      join_small_cells(glued, first, volumes, to.spacing * to.spacing * to.spacing);
       break;
     } catch (const GeometryError&) {
       if (attempt + 1 == attempts) throw;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/elementary.h"
 #include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "geometry/distance.h"
@@ -36,13 +37,14 @@ struct InteractionIntegral::Domain {
   double core, radius, width;
 
   Vec3 local(const Vec3& x) const { return axes.transpose() * (x - tip.at); }
-  bool holds(const Vec3& x) const { return std::hypot(x.x(), x.y()) < radius && std::abs(x.z()) < width; }
+  bool holds(const Vec3& x) const { return x.head<2>().norm() < radius && std::abs(x.z()) < width; }
   double along(double z) const { return std::max(0.0, 1 - z * z / (width * width)); }
   double across(double r) const { return r < core ? 1 : (radius - r) / (radius - core); }
-  double weight(const Vec3& x) const { return across(std::hypot(x.x(), x.y())) * along(x.z()); }
+  double reach() const { return std::sqrt(radius * radius + width * width); }
+  double weight(const Vec3& x) const { return across(x.head<2>().norm()) * along(x.z()); }
   // Gradient of the weight at a point that the domain holds.
   Vec3 gradient(const Vec3& x) const {
-    const double r = std::hypot(x.x(), x.y());
+    const double r = x.head<2>().norm();
     const Vec3 ends(0, 0, -2 * across(r) * x.z() / (width * width));
     return r < core ? ends : Vec3(ends - along(x.z()) / ((radius - core) * r) * Vec3(x.x(), x.y(), 0));
   }
@@ -59,7 +61,7 @@ bool ends_front(const std::array<Vec3, 3>& corners) {
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 edge = corners[(k + 1) % 3] - corners[k];
     along = std::max(along, std::abs(edge.z()));
-    across = std::max(across, std::hypot(edge.x(), edge.y()));
+    across = std::max(across, edge.head<2>().norm());
   }
   return along < end_slope * across;
 }
@@ -75,7 +77,7 @@ double distance_to_others(const Complex& complex, const Domain& domain, std::int
     const auto [a, b, c] = complex.corners(face);
     if (ends_front({domain.local(a), domain.local(b), domain.local(c)})) continue;
     const Vec3 x = domain.local(closest_point_on_triangle(domain.tip.at, a, b, c));
-    if (std::abs(x.z()) < domain.width) nearest = std::min(nearest, std::hypot(x.x(), x.y()));
+    if (std::abs(x.z()) < domain.width) nearest = std::min(nearest, x.head<2>().norm());
   }
   return nearest;
 }
@@ -101,7 +103,7 @@ double straight_length(const Complex& complex, const Domain& domain, std::int32_
     if (complex.face(face).crack != crack) continue;
     for (const Vec3& corner : complex.corners(face)) {
       const Vec3 x = domain.local(corner);
-      if (domain.holds(x) && std::abs(x.y()) > 0.1 * x.norm()) length = std::min(length, std::hypot(x.x(), x.y()));
+      if (domain.holds(x) && std::abs(x.y()) > 0.1 * x.norm()) length = std::min(length, x.head<2>().norm());
     }
   }
   return length;
@@ -151,7 +153,7 @@ std::optional<Vec3> InteractionIntegral::at(const GrowingFront& front, std::size
 void InteractionIntegral::add_points(const Domain& domain, const Mat3& rotation, Sum& sum) const {
   const MaterialPoints& points = SolidDiscretisation::of(solid_).points;
   const Vec3& tip = domain.tip.at;
-  const Box3 box = Box3{tip, tip}.grown(std::hypot(domain.radius, domain.width));
+  const Box3 box = Box3{tip, tip}.grown(domain.reach());
   std::vector<Mat3> gradient;
   for (std::size_t b = 0; b < points.blocks.size(); ++b) {
     const PointBlock& block = points.blocks[b];
@@ -167,7 +169,7 @@ void InteractionIntegral::add_points(const Domain& domain, const Mat3& rotation,
                          (rotation.transpose() * (Mat3::Identity() + gradient[p]) - Mat3::Identity()) * domain.axes;
       const Mat3 strain = 0.5 * (slope + slope.transpose());
       const Mat3 stress = material.lambda() * strain.trace() * Mat3::Identity() + 2 * material.mu() * strain;
-      const double r = std::hypot(x.x(), x.y()), angle = std::atan2(x.y(), x.x());
+      const double r = x.head<2>().norm(), angle = angle_of(x.y(), x.x());
       const Vec3 falls = domain.gradient(x);
       const Mat3 ahead = mode_slope(material, r, angle);
       for (int mode = 0; mode < 3; ++mode) {
@@ -187,14 +189,14 @@ void InteractionIntegral::add_points(const Domain& domain, const Mat3& rotation,
 void InteractionIntegral::add_inertia(const Domain& domain, const Mat3& rotation, double spacing, Sum& sum) const {
   if (motion_.acceleration.size() != body_.nodes.size()) return;
   std::vector<std::uint32_t> near;
-  body_.cache->grid.within(body_.nodes.position, domain.tip.at, std::hypot(domain.radius, domain.width), near);
+  body_.cache->grid.within(body_.nodes.position, domain.tip.at, domain.reach(), near);
   for (const std::uint32_t i : near) {
     const Vec3 x = domain.local(body_.nodes.position[i]);
     if (!domain.holds(x)) continue;
-    const double r = std::max(std::hypot(x.x(), x.y()), 0.1 * spacing);
+    const double r = std::max(x.head<2>().norm(), 0.1 * spacing);
     const Vec3 force = solid_.mass(NodeId(i)) * (rotation * domain.axes).transpose() * motion_.acceleration[i];
     sum.integral +=
-        domain.weight(x) * mode_slope(solid_.materials().of(i), r, std::atan2(x.y(), x.x())).transpose() * force;
+        domain.weight(x) * mode_slope(solid_.materials().of(i), r, angle_of(x.y(), x.x())).transpose() * force;
   }
 }
 

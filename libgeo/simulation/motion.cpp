@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <numbers>
 
+#include "geometry/rotation.h"
+
 namespace geo {
 
 Pose Motion::at(double time) const {
   if (keys.empty()) return {};
   const auto rotation = [](const Key& k, double degrees) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, k.axis.normalized()));
+    return rotation_about(k.axis.normalized(), degrees * std::numbers::pi / 180);
   };
   std::size_t i = 0;
   while (i + 2 < keys.size() && keys[i + 1].time <= time) ++i;
@@ -22,7 +24,7 @@ Pose Motion::at(double time) const {
   if (t == 1) return {b.position, rotation(b, b.angle)};
   const Vec3 position = a.position + t * (b.position - a.position);
   if (a.axis == b.axis) return {position, rotation(a, a.angle + t * (b.angle - a.angle))};
-  return {position, rotation(a, a.angle).slerp(t, rotation(b, b.angle))};
+  return {position, rotation_between(rotation(a, a.angle), rotation(b, b.angle), t)};
 }
 
 }  // namespace geo

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "geometry/rotation.h"
 #include "kerf/parallel.h"
 
 namespace geo {
@@ -120,8 +121,9 @@ void Obstacles::add_potentials(const ObjectContactStep& step, Environment& envir
       from = isometry(scene.obstacles[k].pose(step.time));
       to = isometry(scene.obstacles[k].pose(step.time + dt));
     }
-    const double moved = (to.translation() - from.translation()).norm() +
-                         shapes_[k]->extent() * Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle();
+    const double moved =
+        (to.translation() - from.translation()).norm() +
+        shapes_[k]->extent() * axis_and_angle(Eigen::Quaterniond(from.linear().transpose() * to.linear())).angle();
     // Twice the way of nodes at their present speed, since forces of the step may accelerate them.
     const double reach = 2 * dt * (scale.fastest + scale.fall) + moved + scale.spacing;
     obstacles_.emplace_back(shapes_[k], options, from, to);

@@ -40,4 +40,11 @@ void RunData::restore(Body new_body, RunState new_state) {
   solid.restart(materials_of(scene, state.body_index));
 }
 
+void RunData::become(RunStart other) {
+  state = checked(scene, other.body, std::move(other.state));
+  body = std::move(other.body);
+  changes.revert(scene);
+  solid.rebuild(materials_of(scene, state.body_index));
+}
+
 }  // namespace geo

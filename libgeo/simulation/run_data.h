@@ -19,6 +19,9 @@ struct RunData {
   /// Goes to a checkpoint of this run, with the values before the scene's first change. Throws
   /// InputError as the constructor; nothing has changed then.
   void restore(Body new_body, RunState new_state);
+  /// Goes on at the present time with another body and state, as a new run of the scene would.
+  /// Throws InputError as the constructor; nothing has changed then.
+  void become(RunStart other);
 
   Scene scene;
   SceneChanges changes;

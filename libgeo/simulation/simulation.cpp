@@ -9,6 +9,7 @@
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/solver/solid_discretisation.h"
+#include "simulation/blow.h"
 #include "simulation/driven_motion.h"
 #include "simulation/run_data.h"
 #include "simulation/time_loop.h"
@@ -17,7 +18,9 @@ namespace geo {
 
 struct Simulation::Impl {
   Impl(const Scene& scene, Body body, RunState state)
-      : run(scene, std::move(body), std::move(state)), loop(std::make_unique<TimeLoop>(run)) {}
+      : run(scene, std::move(body), std::move(state)),
+        loop(std::make_unique<TimeLoop>(run)),
+        given_blows(scene.blows.size()) {}
   // Time of a frame, in seconds. `frame`: 0 is the present one, 1 the next.
   double time_of(int frame) const { return (run.state.frame + frame) * (1 / run.scene.frame_rate); }
   Motion& motion_of(Handle::Kind kind, std::size_t index) {
@@ -34,6 +37,12 @@ struct Simulation::Impl {
 
   RunData run;
   std::unique_ptr<TimeLoop> loop;
+  std::size_t given_blows;  // of the scene that the run began with; later ones have fallen already
+
+  void strike(RunStart broken) {
+    run.become(std::move(broken));
+    loop = std::make_unique<TimeLoop>(run);
+  }
 };
 
 Simulation::Simulation(const Scene& scene, const TriangleMesh& solid, const Progress& progress)
@@ -141,7 +150,23 @@ void Simulation::change(SceneChange change) {
   impl_->run.scene.add_change(change);
 }
 
-FrameStats Simulation::advance_frame(const Progress& progress) { return impl_->loop->advance_frame(progress); }
+void Simulation::strike(Blow blow) {
+  if (blow.cells < 2 || !in_range(blow.point)) throw InputError("a blow has 2 cells at least, and a finite point");
+  impl_->strike(broken_by(*this, blow));
+  blow.time = state().time;
+  impl_->run.scene.blows.push_back(blow);
+}
+
+// Blows fall where a frame begins at their time, or later than that by less than a frame. So a run
+// that goes on from a checkpoint needs no note of those that have fallen.
+FrameStats Simulation::advance_frame(const Progress& progress) {
+  constexpr double tolerance = 1e-6;  // of a frame: times of frames are rounded
+  const double frame = 1 / scene().frame_rate, now = impl_->time_of(0) + tolerance * frame;
+  for (std::size_t b = 0; b < impl_->given_blows; ++b)
+    if (const Blow& blow = scene().blows[b]; blow.time <= now && (state().frame == 0 || blow.time > now - frame))
+      impl_->strike(broken_by(*this, blow));
+  return impl_->loop->advance_frame(progress);
+}
 
 TriangleMesh Simulation::surface(const TriangleMesh* model) const {
   const RunData& run = impl_->run;

@@ -98,6 +98,14 @@ void change(Simulation& self, const py::kwargs& values) {
   self.acted = true;
 }
 
+void strike(Simulation& self, py::object point, int cells) {
+  const geo::Vec3 at = point_from(point, "point");
+  if (cells < 2 || cells > 1000) throw geo::InputError("cells: give a number from 2 to 1000");
+  const Writing writing(self.busy);
+  without_gil([&] { self.run().strike({.point = at, .cells = cells}); });
+  self.acted = true;
+}
+
 void write_recording(Simulation& self, const Path& path) {
   const Reading reading(self.busy);
   geo::require_writable(path);
@@ -174,6 +182,11 @@ void add_hands(py::module_& module, Class& simulation) {
            "coordinates. Raises InputError.")
       .def("add_pull", &add_pull, py::arg("point"), py::arg("to"), py::kw_only(), py::arg("stiffness") = 100.0,
            py::arg("node") = py::none(), add_pull_doc)
+      .def("strike", &strike, py::arg("point"), py::kw_only(), py::arg("cells") = 12,
+           "Breaks the piece of the surface nearest to a point, (3,), world, into about so many cells, small near it.\n"
+           "Its parts fly from the point. Raises InputError where a blade is in the body, GeometryError where the "
+           "piece\n"
+           "does not break; the run is then as it was.")
       .def("change", &change, change_doc)
       .def("write_recording", &write_recording, py::arg("path"), write_recording_doc);
 }

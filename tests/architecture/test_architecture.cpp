@@ -57,6 +57,7 @@ const std::map<std::string, std::string> public_headers{
     {"simulation", "simulation"},
     {"solid", "mechanics/solver"},
     {"vec", "base"},
+    {"vectors", "geometry"},
 };
 
 // The paper's main claim is that surface and discretisation do not know each other.

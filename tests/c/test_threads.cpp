@@ -105,4 +105,8 @@ TEST_CASE("messages belong to a thread, and name what is wrong", "[c]") {
   CHECK(kerf_status_name(KERF_BUSY) == std::string("KERF_BUSY"));
   CHECK(kerf_status_name(static_cast<kerf_status>(12)) == std::string());
   CHECK(kerf_abi() == KERF_ABI);
+  CHECK(kerf_set_threads(-1) == KERF_ARGUMENT);
+  CHECK(kerf_set_portable(2) == KERF_ARGUMENT);
+  CHECK(kerf_set_portable(1) == KERF_OK);
+  CHECK(kerf_set_portable(0) == KERF_OK);
 }

@@ -106,6 +106,26 @@ TEST_CASE("a break in the smallest steps has parts that fill the solid after eac
   }
 }
 
+TEST_CASE("pieces of breaks in short calls are valid models, and break again", "[impact]") {
+  const auto [first, count] = seeds(4);
+  for (int i = 0; i < count; ++i) {
+    const std::uint64_t seed = first + static_cast<std::uint64_t>(i);
+    CAPTURE(seed);
+    Random random(seed);
+    const TriangleMesh mesh = random.below(2) ? make_pumpkin(8) : make_letter(char('A' + random.below(26)), 0.3, 12);
+    Breaking breaking(Breakable(mesh), blow(mesh, random), pieces(64));
+    while (!breaking.advance(random.uniform(0, 0.02))) continue;
+    for (const BrokenPart* part : checked_parts(breaking)) {
+      CHECK_NOTHROW(require_solid(part->solid.mesh()));
+      Breaking again(part->solid, {.point = bounding_box(part->solid.mesh()).center(), .energy = 1}, pieces(3));
+      while (!again.advance(random.uniform(0, 0.005))) continue;
+      const auto shards = checked_parts(again);
+      CHECK(shards.size() > 1);
+      for (const BrokenPart* shard : shards) CHECK_NOTHROW(require_solid(shard->solid.mesh()));
+    }
+  }
+}
+
 TEST_CASE("pieces are small at the impact, and long along its direction", "[impact]") {
   const TriangleMesh mesh = make_block(Vec3(1, 1, 1), 0.2);
   Breaking breaking(Breakable(mesh), {.point = Vec3(0, 0, 0), .direction = Vec3(0, 0, 1), .energy = 1}, pieces(40));

@@ -1,10 +1,11 @@
 """live.py [--rates BUILD_DIR] LIVE_DIR: the live page without a server (js/build), in a browser, used by real pointer and touch events.
 
-The bear is cut by one drag, undone, cut three times, broken, saved; a GLB is dropped, cut and broken, on a phone's screen by a finger.
+The bear is cut by one drag, undone, cut three times, broken, saved. With KERF_TOOLS, a folder with kerf-sim, the saved scene is run
+there. A GLB is dropped, cut and broken, on a phone's screen by a finger.
 The console has no error, and after the page is loaded nothing asks any host for anything.
 --rates: only how many frames of simulation a second the polyp and the bear of 800 nodes have, before and after a cut.
 """
-import base64, functools, http.server, json, os, struct, subprocess, sys, tempfile, threading, time
+import base64, functools, http.server, json, os, shutil, struct, subprocess, sys, tempfile, threading, time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "live"))
@@ -127,6 +128,31 @@ ON_BODY = """(() => {
   return found.sort((a, b) => a[0] - b[0]).map(([, x, y]) => [x, y]); })()"""
 
 
+def elements(ply):
+    """Lines of a PLY file that say how many vertices and faces it has."""
+    return [line for line in ply.split(b"end_header")[0].split(b"\n") if line.startswith(b"element")]
+
+
+def check_replayed(hand):
+    """What the page did with the bear, cuts and a break, is what kerf-sim --portable does with the scene that it saves."""
+    hand.key(" ")
+    hand.wait("live.stats.paused")
+    scene = saved(hand, "toml")
+    check("the scene has the break", scene.count(b"[[blow]]") == 1)
+    if "KERF_TOOLS" in os.environ:
+        with open("bear.toml", "wb") as file:
+            file.write(scene)
+        shutil.copy(os.path.join(folder, "bear.off"), ".")
+        tool = os.path.join(os.environ["KERF_TOOLS"], "kerf-sim")
+        subprocess.run([tool, "bear.toml", "--portable", "-q", "-o", "replayed"], check=True)
+        last = sorted(os.listdir("replayed/frames"))[-1]
+        with open(os.path.join("replayed/frames", last), "rb") as file:
+            there, here = elements(file.read()), elements(saved(hand, "ply"))
+        check(f"{last} of kerf-sim has {there}, the page {here}", there == here)
+    hand.key(" ")
+    hand.wait("!live.stats.paused")
+
+
 def break_here(hand, strokes, press):
     """Breaks the piece at a place of the body by the tool; the number of pieces after it. Another place where it is refused."""
     hand.tool("break")
@@ -207,8 +233,7 @@ def use(hand):
     before = pieces
     pieces = break_here(hand, 4, hand.click)
     check(f"{before} pieces are {pieces} after a break", pieces > before + 2)
-    press_save(hand, "toml")
-    hand.wait("!$('notice').hidden && $('notice').textContent.includes('cannot hold a break')")
+    check_replayed(hand)
     check("no .glb of a broken bear", saved(hand, "glb")[:4] == b"glTF")
     hand.button("#undo")
     hand.wait(f"live.stats.undo === 3 && live.stats.blows === 0 && live.stats.pieces === {before}")

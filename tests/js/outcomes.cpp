@@ -2,7 +2,7 @@
 // natively and for WebAssembly, it must print the same lines (tests/js/run).
 //   outcomes break MODEL...       three patterns each
 //   outcomes cut COUNT MODEL...   progressive cuts of these in turn
-//   outcomes run SCENE FRAMES     energies and crossings of each frame
+//   outcomes run SCENE FRAMES     energies and crossings of each frame, with portable vectors
 #include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
@@ -101,6 +101,7 @@ void print_cut(int number, const std::string& name) {
 }
 
 void print_run(const std::string& path, int frames) {
+  set_vectors(Vectors::portable);
   Scene scene = read_scene(path);
   scene.frames = frames;
   CrossingCounter crossings;

@@ -329,6 +329,30 @@ class Hands(unittest.TestCase):
                     self.assertEqual(again.surface().vertices.tobytes(), surface.tobytes(), f"seed {seed}, frame {frame}")
             self.assertGreater(cut, 0)
 
+    def test_blows(self):
+        scene = SCENE.split("[[blade]]")[0]  # a blade in the body would be in the way
+        def pieces_of(run):
+            return run.body.complex().piece_count
+
+        dice = random.Random(dice_seed := random.randrange(1 << 30))
+        with tempfile.TemporaryDirectory() as name:
+            path = pathlib.Path(name) / "recorded.toml"
+            run = kerf.Simulation(scene, models=model())
+            for _ in range(dice.randrange(3)):
+                run.step()
+            for bad in (lambda: run.strike([0, 0]), lambda: run.strike([0, 0, np.nan]), lambda: run.strike([0, 0, 1], cells=1)):
+                self.assertRaises(kerf.InputError, bad)
+            run.strike([dice.random(), dice.random(), 1], cells=8)
+            pieces = pieces_of(run)
+            self.assertGreater(pieces, 1, f"seed {dice_seed}")
+            run.step()
+            run.write_recording(path)
+            again = kerf.Simulation(path, models=model())
+            for _ in range(again.scene.frames):
+                again.step()
+            self.assertEqual(pieces_of(again), pieces, f"seed {dice_seed}")
+            self.assertEqual(again.surface().vertices.tobytes(), run.surface().vertices.tobytes(), f"seed {dice_seed}")
+
     @unittest.skipUnless(shutil.which("kerf-sim", path=os.environ.get("KERF_TOOLS", "")), "needs kerf-sim in KERF_TOOLS")
     def test_kerf_sim_replays_a_recording(self):
         tool = shutil.which("kerf-sim", path=os.environ.get("KERF_TOOLS", ""))

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <kerf/error.h>
-#include "live/broken_body.h"
 #include "live/memory.h"
 #include "sim/start.h"
 
@@ -79,14 +78,22 @@ void Session::obey(const Set& set) {
 
 void Session::obey(const Blow& blow) {
   if (hands_.has_strokes()) throw BadMessage("a stroke is in the body: break it when the stroke is over");
-  const PickedPoint hit = view_.pick(run_.body().surface, blow.spot);
-  const geo::RunStart broken = broken_body(run_, hit, view_.world_point(blow.spot), blow.cells);
+  view_.pick(run_.body().surface, blow.spot);  // a triangle that is there
+  const geo::Blow hit{.time = run_.state().time, .point = view_.world_point(blow.spot), .cells = blow.cells};
+  std::string before = state_bytes();
+  try {
+    run_.strike(hit);
+  } catch (const geo::GeometryError& e) {
+    throw BadMessage(e.what());
+  } catch (const geo::InputError& e) {
+    throw BadMessage(e.what());
+  }
   history_.forget_undone();
-  history_.add({.mark = scene().mark(run_.state()), .beside = beside()}, state_bytes());
+  history_.add({.mark = scene().mark(run_.state()), .beside = beside()}, std::move(before));
   Beside now = beside();
-  ++now.blows;
-  resume(scene().at(scene().mark(run_.state())), sim::checkpoint_bytes(broken.body, broken.state, setup_.fingerprint),
-         broken.state.frame, std::move(now));
+  now.blows.push_back(hit);
+  // Frame 0: the recording needs no checkpoint here, since a run goes on from a blow as from one.
+  resume(scene().at(scene().mark(run_.state())), state_bytes(), 0, std::move(now));
 }
 
 Effort Session::effort() const { return {run_.scene().accuracy, run_.scene().steps_per_frame()}; }
@@ -124,7 +131,7 @@ std::string Session::state_bytes() const {
 void Session::resume(const geo::Scene& scene, const std::string& checkpoint, int frame, Beside beside) {
   checkpoints_ = std::move(beside.checkpoints);
   withheld_ = beside.withheld;
-  blows_ = beside.blows;
+  blows_ = std::move(beside.blows);
   if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
   hands_.begin_anew(std::move(beside.lasting));
   view_.clear();
@@ -220,10 +227,13 @@ std::string Session::advance(bool whole) {
 }
 
 geo::Scene Session::recording() const {
-  if (blows_ > 0)
-    throw geo::InputError("a scene cannot hold a blow: undo it, or save the body as .kerf, .glb, .stl or .ply");
   geo::Scene scene = geo::recording_of(setup_.scene, run_);
   scene.checkpoints = checkpoints_;
+  if (!blows_.empty() && blows_.back().time >= run_.state().time)
+    scene.frames = run_.state().frame + 1;  // that shows it
+  scene.blows.insert(scene.blows.end(), blows_.begin(), blows_.end());
+  std::stable_sort(scene.blows.begin(), scene.blows.end(),
+                   [](const auto& a, const auto& b) { return a.time < b.time; });
   return scene;
 }
 

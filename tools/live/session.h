@@ -85,8 +85,7 @@ class Session {
   const geo::Simulation& run() const { return run_; }
   /// The values that the run began with.
   const geo::Scene& original() const { return setup_.scene; }
-  /// The scene that gives this run, with everything that hands did. Throws geo::InputError after a
-  /// blow, which no scene has.
+  /// The scene that gives this run, with everything that hands did.
   geo::Scene recording() const;
   /// Fills positions, topology and inputs taken.
   void show(Snapshot& snapshot);
@@ -103,7 +102,7 @@ class Session {
   /// Gravity, also while it is withheld.
   geo::Vec3 gravity() const { return withheld_ ? *withheld_ : run_.scene().gravity; }
   /// Blows in the body as it is now.
-  int blows() const { return blows_; }
+  int blows() const { return static_cast<int>(blows_.size()); }
   /// World positions of the edges of blades that exist, each with the force on it, N.
   std::vector<std::pair<std::vector<geo::Vec3>, double>> edges() const;
 
@@ -136,7 +135,7 @@ class Session {
   std::map<ClientId, std::uint64_t> taken_;
   std::vector<geo::SceneChange> changes_;  // by hands and effort
   std::optional<geo::Vec3> withheld_;      // gravity that does not act yet
-  int blows_ = 0;                          // in the body as it is now
+  std::vector<geo::Blow> blows_;           // by hands, in the body as it is now
   std::vector<int> checkpoints_;           // frames from which the run went on from its own checkpoint
 };
 

@@ -18,7 +18,7 @@ struct Beside {
   Lasting lasting;
   std::vector<int> checkpoints;       ///< frames from which the run went on from its own checkpoint
   std::optional<geo::Vec3> withheld;  ///< gravity that does not act yet
-  int blows = 0;                      ///< so far, which no scene has
+  std::vector<geo::Blow> blows;       ///< by hands, so far
 };
 
 /// A run as it was before a stroke.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "geometry/rotation.h"
 #include "kerf/parallel.h"
 #include "mechanics/terms/weighted_sums.h"
 
@@ -25,7 +26,8 @@ Eigen::Isometry3d ObstaclePenalty::pose(double share) const {
   if (share <= 0) return from_;
   if (share >= 1) return to_;
   Eigen::Isometry3d p = Eigen::Isometry3d::Identity();
-  p.linear() = Eigen::Quaterniond(from_.linear()).slerp(share, Eigen::Quaterniond(to_.linear())).toRotationMatrix();
+  p.linear() =
+      rotation_between(Eigen::Quaterniond(from_.linear()), Eigen::Quaterniond(to_.linear()), share).toRotationMatrix();
   p.translation() = (1 - share) * from_.translation() + share * to_.translation();
   return p;
 }

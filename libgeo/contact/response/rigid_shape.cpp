@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/elementary.h"
 #include "geometry/distance.h"
 
 namespace geo {
@@ -27,7 +28,7 @@ RigidShape::RigidShape(const TriangleMesh& mesh) : corners_(corners_of(mesh)) {
     normals_[t][0] = n;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 &p = corners_[t][k], to = corners_[t][(k + 1) % 3] - p, from = corners_[t][(k + 2) % 3] - p;
-      corner[mesh.triangles[t][k]] += std::atan2(to.cross(from).norm(), to.dot(from)) * n;
+      corner[mesh.triangles[t][k]] += angle_of(to.cross(from).norm(), to.dot(from)) * n;
       edge.try_emplace(key(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]), Vec3::Zero()).first->second += n;
       extent_ = std::max(extent_, p.norm());
     }

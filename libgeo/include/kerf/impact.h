@@ -45,7 +45,7 @@ struct Impact {
 /// Whether a break checks, as cracks of other kinds do, that no faces cross where coordinates are
 /// rounded. How faces are joined is exact in any case. The check takes up to two thirds of a break.
 enum class ImpactGuard {
-  none,  ///< faces of a piece may cross by some ulps
+  none,  ///< faces of a piece may cross by some ulps, though none did in tests
   full,  ///< none cross: pieces are valid models (require_solid())
 };
 

@@ -30,3 +30,4 @@
 #include "kerf/simulation.h"
 #include "kerf/solid.h"
 #include "kerf/vec.h"
+#include "kerf/vectors.h"

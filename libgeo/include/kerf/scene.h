@@ -175,6 +175,14 @@ struct SceneChange {
   std::optional<double> dt = {};        ///< largest time step, s, from the next frame on
 };
 
+/// A blow between two frames: the piece that is hit breaks into cells, and its parts fly from the
+/// point. Cracks that grow by stress end.
+struct Blow {
+  double time = 0;            ///< s: it falls before the first frame that begins then or later
+  Vec3 point = Vec3::Zero();  ///< world: on the surface, or near it
+  int cells = 12;             ///< of the box around the piece, 2 to 1000: the number of parts, or more than that
+};
+
 /// A rigid cutting edge, a polyline, with an optional wedge behind it.
 struct Blade {
   std::string name;
@@ -232,6 +240,7 @@ struct Scene {
   std::vector<SceneScoreFile> score_files;  ///< that `scores` were read from
   std::vector<Grip> grips;
   std::vector<Pull> pulls;
+  std::vector<Blow> blows;  ///< ascending in time
   std::vector<Load> loads;
   std::vector<Support> supports;
   std::vector<SceneChange> changes;  ///< ascending in time; of equal times, the later one decides

@@ -193,7 +193,8 @@ class Simulation {
   void restore(Body body, RunState state);
 
   /// Makes time steps up to the next frame. A crack step that cannot be made is counted, and tried
-  /// again in the next time step. Throws GeometryError where a position is no longer finite,
+  /// again in the next time step. Throws GeometryError where a position is no longer finite, or
+  /// where a blow of the scene breaks nothing,
   /// Interrupted where `progress` requests it.
   FrameStats advance_frame(const Progress& progress = {});
 
@@ -222,6 +223,11 @@ class Simulation {
   PullHandle add_pull(Pull pull);
   /// Adds a pull whose other end is here now, world, and which pulls once it is driven.
   PullHandle add_pull(Pull pull, const Vec3& end);
+  /// Breaks the piece that is hit, at the present time, to which blow.time is set. A run of a scene
+  /// that has had the blow from the start gives the same frames, to the bit. Throws InputError
+  /// where a blade is in the body, or for less than 2 cells; GeometryError where the piece does not
+  /// break. The run is then as it was.
+  void strike(Blow blow);
   /// Changes values from the present time on, up to the scene's next change of the same value;
   /// change.time is set to it. Throws InputError for values that a scene may not have.
   void change(SceneChange change);

@@ -176,12 +176,13 @@ Vec3 InverseDeformation::skin_correction(Neighborhood& near, const Vec3& x, doub
     const double d = (on - y).norm();
     if (d >= range) continue;
     const auto corner = body_.surface.corners(face);
-    const double w = std::pow((range - d) / std::max(d, 1e-12 * range), 2);
+    const double root = (range - d) / std::max(d, 1e-12 * range), w = root * root;
     sum += w * (b[0] * corner[0] + b[1] * corner[1] + b[2] * corner[2] - (x + f_inverse * (on - y)));
     total += w;
     nearest = std::min(nearest, d);
   }
-  return total > 0 ? Vec3(std::pow(1 - nearest / range, 2) * sum / total) : Vec3(Vec3::Zero());
+  const double share = 1 - nearest / range;
+  return total > 0 ? Vec3(share * share * sum / total) : Vec3(Vec3::Zero());
 }
 
 // The node nearest in the world; among those near `before` in the material, if one of them holds y.

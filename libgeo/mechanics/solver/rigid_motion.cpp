@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.h"
 #include "geometry/nearest_rotation.h"
 #include "geometry/principal_inertia.h"
 #include "kerf/parallel.h"
@@ -59,9 +60,9 @@ Vec3 RigidMotion::arc_correction(const Vec3& at, const Vec3& displacement, doubl
   const Vec3 axis = angle / size;
   // Rodrigues' formula.
   const auto rotate = [&](const Vec3& arm, double sine) -> Vec3 {
-    return sine * axis.cross(arm) + (1 - std::cos(a)) * axis.cross(axis.cross(arm));
+    return sine * axis.cross(arm) + (1 - cosine(a)) * axis.cross(axis.cross(arm));
   };
-  return rotate(at - centre, std::sin(a) - a) + rotate(share * (displacement - linearised(at)), std::sin(a));
+  return rotate(at - centre, sine(a) - a) + rotate(share * (displacement - linearised(at)), sine(a));
 }
 
 std::vector<RigidMotion> rigid_motions(const std::vector<std::uint32_t>& set, const std::vector<Freedom>& freedom,

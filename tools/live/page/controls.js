@@ -148,11 +148,6 @@ function listenToControls() {
   }
   for (const name of Object.keys(values)) $(name).addEventListener("input", () => slide(name));
   $("wait").addEventListener("click", () => wire.open || connect());
-  document.addEventListener("click", (e) => {
-    if (!live.stats.blows || !e.target.closest("a[href='save?as=toml']")) return;
-    e.preventDefault(), e.stopImmediatePropagation();
-    notice({ error: "A scene cannot hold a break: undo it, or save the body as .kerf, .glb, .stl or .ply." });
-  }, true);
 }
 
 // A view to begin with, behind the page's name: #tool=grab&azimuth=1&nodes=true

@@ -4,21 +4,27 @@
 #include <functional>
 #include <vector>
 
-#include <kerf/simulation.h>
-#include "live/surface_view.h"
+#include "kerf/simulation.h"
 
-namespace live {
+namespace geo {
+
+/// A point of the surface of a run.
+struct SurfaceHit {
+  Vec3 material = Vec3::Zero();
+  SurfaceVertexId nearest;  ///< vertex of the surface
+  Side side = {};           ///< in which it is
+};
 
 /// A complex that has grown from another one, whose faces it divides.
 struct Grown {
-  const geo::Complex& old;
-  geo::Complex now;
-  std::vector<geo::FaceId> parent = {};  ///< per face of `now`: the old face that it is of; invalid: of a new wall
+  const Complex& old;
+  Complex now;
+  std::vector<FaceId> parent = {};  ///< per face of `now`: the old face that it is of; invalid: of a new wall
 
   /// `to` has grown from `from`, which must outlive this.
-  Grown(const geo::Complex& from, const geo::Complex& to);
+  Grown(const Complex& from, const Complex& to);
   /// Calls visit(side) for each side of `now`.
-  void for_each_side(const std::function<void(geo::Side)>& visit) const;
+  void for_each_side(const std::function<void(Side)>& visit) const;
 };
 
 /// The places of all living vertices, ascending, after a piece of a deformed body has broken.
@@ -26,6 +32,6 @@ struct Grown {
 /// both sides of their wall.
 /// \param run  before the break; its state has the places of its surface
 /// \param hit  a point of the piece
-std::vector<geo::Vec3> broken_surface(const geo::Simulation& run, const Grown& grown, const PickedPoint& hit);
+std::vector<Vec3> broken_surface(const Simulation& run, const Grown& grown, const SurfaceHit& hit);
 
-}  // namespace live
+}  // namespace geo

@@ -1,5 +1,5 @@
 // Inside, the motion of the nodes is followed. Where the surface is off it, so are walls nearby.
-#include "live/broken_surface.h"
+#include "simulation/broken_surface.h"
 
 #include <algorithm>
 #include <array>
@@ -11,18 +11,13 @@
 #include <unordered_map>
 #include <utility>
 
-#include <kerf/mesh.h>
+#include "kerf/error.h"
+#include "kerf/mesh.h"
 
-namespace live {
-
-using geo::Complex;
-using geo::FaceId;
-using geo::Side;
-using geo::SurfaceVertexId;
-using geo::Vec3;
+namespace geo {
 
 Grown::Grown(const Complex& from, const Complex& to) : old(from), now(from) {
-  const geo::ComplexEdit edit = old.difference(to);
+  const ComplexEdit edit = old.difference(to);
   now.apply(edit);
   for (std::uint32_t f = 0; f < old.face_count(); ++f) parent.emplace_back(f);
   for (const auto& face : edit.new_faces) parent.push_back(face.parent);
@@ -49,17 +44,17 @@ Vec3 barycentric(const Vec3& p, const std::array<Vec3, 3>& t) {
 class ByNodes {
  public:
   // `inside`: a node of the piece.
-  ByNodes(const geo::Simulation& run, geo::NodeId inside)
+  ByNodes(const Simulation& run, NodeId inside)
       : nodes_(run.body().nodes),
         displacement_(run.state().motion.displacement),
         gradient_(run.solid().gradients(displacement_)) {
     // No edge of the graph passes through a crack.
-    const geo::VisibilityGraph& graph = run.body().graph;
+    const VisibilityGraph& graph = run.body().graph;
     std::vector<bool> seen(nodes_.size(), false);
     seen[inside.index()] = true;
     piece_ = {inside.value};
     for (std::size_t i = 0; i < piece_.size(); ++i)
-      for (const geo::NodeId next : graph.edges(geo::NodeId(piece_[i]))) {
+      for (const NodeId next : graph.edges(NodeId(piece_[i]))) {
         if (next.index() >= nodes_.size() || seen[next.index()]) continue;
         seen[next.index()] = true;
         piece_.push_back(next.value);
@@ -87,9 +82,9 @@ class ByNodes {
   }
 
  private:
-  const geo::NodeSet& nodes_;
+  const NodeSet& nodes_;
   const std::vector<Vec3>& displacement_;
-  std::vector<geo::Mat3> gradient_;
+  std::vector<Mat3> gradient_;
   std::vector<std::uint32_t> piece_;
 };
 
@@ -128,12 +123,12 @@ class Places {
         now_[v.index()] = old_[v.index()];
         continue;
       }
-      const geo::VertexId site = grown_.now.site(v);
+      const VertexId site = grown_.now.site(v);
       now_[v.index()] = at_site(site, on(parent, s.which, site));
     }
   }
   // The place of a vertex of K in an old side.
-  Vec3 on(FaceId face, int which, geo::VertexId site) const {
+  Vec3 on(FaceId face, int which, VertexId site) const {
     const auto& corners = grown_.old.face(face).v;
     const Vec3 weight = barycentric(grown_.now.point(site), grown_.old.corners(face));
     Vec3 sum = Vec3::Zero();
@@ -160,7 +155,7 @@ class Places {
     for_each_vertex([&](std::uint32_t v, std::uint32_t site) {
       if (now_[v]) return;
       const auto [here, is_new] = inner.try_emplace(site);
-      if (is_new) here->second.by_nodes = motion(grown_.now.point(geo::VertexId(site)));
+      if (is_new) here->second.by_nodes = motion(grown_.now.point(VertexId(site)));
       here->second.copies.push_back(v);
       of[v] = &here->second;
     });
@@ -188,7 +183,7 @@ class Places {
       for (const std::uint32_t v : here.copies) now_[v] = here.by_nodes + here.shift;
   }
   // Copies of a vertex are at one place, to the bit, unless an older crack is open between them.
-  Vec3 at_site(geo::VertexId site, const Vec3& place) {
+  Vec3 at_site(VertexId site, const Vec3& place) {
     const double apart = 1e-9 * grown_.old.extent().diagonal();
     for (const Vec3& other : at_[site.value])
       if ((other - place).norm() < apart) return other;
@@ -203,17 +198,17 @@ class Places {
 };
 
 // A node of the piece that is hit.
-geo::NodeId node_at(const geo::Simulation& run, const PickedPoint& hit) {
-  const geo::Binding& binding = run.body().binding;
+NodeId node_at(const Simulation& run, const SurfaceHit& hit) {
+  const Binding& binding = run.body().binding;
   const SurfaceVertexId master = binding.master[hit.nearest.index()];
-  if (!master.valid()) throw BadMessage("no node carries this point");
+  if (!master.valid()) throw GeometryError("no node carries this point");
   return binding.master_node[master.index()];
 }
 
 }  // namespace
 
-std::vector<Vec3> broken_surface(const geo::Simulation& run, const Grown& grown, const PickedPoint& hit) {
+std::vector<Vec3> broken_surface(const Simulation& run, const Grown& grown, const SurfaceHit& hit) {
   return Places(grown, run.state().surface).with(ByNodes(run, node_at(run, hit)));
 }
 
-}  // namespace live
+}  // namespace geo

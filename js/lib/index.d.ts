@@ -51,7 +51,7 @@ export interface CrackOptions {
   attempts?: number;
   seed?: number;
 }
-export type Pattern = "planes" | "crossing" | "voronoi" | "radial" | "glass" | "wood" | "bricks";
+export type Pattern = "planes" | "crossing" | "voronoi" | "radial" | "glass" | "wood" | "bricks" | "curves";
 export interface FractureOptions extends PieceOptions {
   pattern?: Pattern;
   attempts?: number;
@@ -71,6 +71,8 @@ export interface FractureOptions extends PieceOptions {
   grain?: number;
   /** voronoi, wood: where cells are many, a channel of the model's colours or a value of at least 0 for each vertex. */
   density?: "red" | "green" | "blue" | "alpha" | "luminance" | ArrayLike<number>;
+  /** curves: the borders of its black areas, along `axis`. Brightness up to 255 of each pixel, or red, green, blue, alpha, as a canvas has them. */
+  image?: { data: Uint8Array | Uint8ClampedArray; width: number; height: number };
   /** Small pieces that break off edges, beside the number of pieces. */
   chips?: number;
   /** Their length, a fraction of the cube root of the mean piece's volume. */

@@ -238,10 +238,23 @@ export class Score {
   [dispose]() { this.delete(); }
 }
 
+// Brightness from 0 to 1 of an image: one number up to 255 a pixel, or four, as a canvas has it, of which the last makes it white.
+function brightness({ data, width, height }) {
+  const pixels = width * height;
+  if (data?.length === pixels) return Float32Array.from(data, (value) => value / 255);
+  if (data?.length !== 4 * pixels)
+    throw new KerfError("InputError", "image: data has neither one nor four numbers for each of width x height pixels; give an ImageData");
+  return Float32Array.from({ length: pixels }, (_, i) => {
+    const [red, green, blue, alpha] = data.subarray(4 * i, 4 * i + 4);
+    return 1 - (alpha / 255) * (1 - (red + green + blue) / 765);
+  });
+}
+
 /** Looks for a pattern that divides a model into as many pieces as wanted. */
 export function score(model, options = {}) {
   const { progress, ...rest } = options;
   if (rest.density !== undefined && typeof rest.density !== "string") rest.density = Float64Array.from(rest.density);
+  if (rest.image !== undefined) rest.image = { width: rest.image.width, height: rest.image.height, brightness: brightness(rest.image) };
   if (rest.impact !== undefined) rest.impact = rows(rest.impact, "impact");
   const complex = model instanceof Complex ? model : model.complex();
   try {
@@ -422,7 +435,7 @@ async function simulation(scene, options = {}) {
 
 const api = {
   Mesh, Solid, Piece, Plane, Front, Score, Complex, FrontState, Breakable, Breaking, BrokenPart, KerfError, plane, score, load, shapes, simulation,
-  patterns: ["planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks"],
+  patterns: ["planes", "crossing", "voronoi", "radial", "glass", "wood", "bricks", "curves"],
   /** Bytes of the module's heap that are in use. */
   usedBytes: () => core.usedBytes(),
 };

@@ -50,6 +50,22 @@ void require(const val& options, const char* option, const char* companion) {
     throw geo::InputError(std::string("score: ") + option + " changes nothing without " + companion + "; give both");
 }
 
+// The outlines of an image (brightness from 0 to 1, width, height) in the middle of a model.
+void add_image(const val& options, const geo::TriangleMesh& model, geo::ScoreOptions& o) {
+  constexpr int widest = 65536;
+  if ((o.pattern.pattern == geo::Pattern::curves) != has(options, "image"))
+    throw geo::InputError("image: goes with the pattern curves, which needs one");
+  if (!has(options, "image")) return;
+  const val given = options["image"];
+  geo::GrayImage image;
+  take(given, "width", image.width, 1, widest);
+  take(given, "height", image.height, 1, widest);
+  image.brightness = numbers_from<float>(given["brightness"]);
+  geo::CutOutOptions cut;
+  if (o.pattern.axis) cut.axis = *o.pattern.axis;
+  o.pattern.curves = geo::cut_out(image, geo::bounding_box(model), cut).curves;
+}
+
 geo::ScoreOptions score_options(const val& options, const geo::TriangleMesh& model) {
   geo::ScoreOptions o;
   if (has(options, "pattern")) o.pattern.pattern = geo::pattern_named(options["pattern"].as<std::string>());
@@ -77,6 +93,7 @@ geo::ScoreOptions score_options(const val& options, const geo::TriangleMesh& mod
   }
   if (has(options, "axis")) o.pattern.axis = axis_from(options["axis"]);
   if (has(options, "impact")) o.pattern.impact = point_from(options["impact"], "impact");
+  add_image(options, model, o);
   return o;
 }
 

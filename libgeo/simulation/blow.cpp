@@ -149,6 +149,7 @@ RunStart attempt(const Simulation& run, const SurfaceHit& hit, int cells, std::u
   // Cracks of blades that have gone leave nothing to go on with.
   for (std::vector<EdgeFront>& fronts : start.state.fronts) fronts.clear();
   start.state.fracture.fronts.clear();
+  start.state.rest = {};  // nothing sleeps
   const BodyDelta delta = update_body(start.body, grown.now);
   Solid solid = run.solid();
   solid.update(start.body, delta, start.state.motion);

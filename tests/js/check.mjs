@@ -26,6 +26,23 @@ const tests = {
     near(sum(chipped.map((piece) => piece.volume)), 1);
     free([...chipped, broken, walls, cube]);
   },
+  "a black square of an image is cut out"() {
+    const cube = k.shapes.block([1, 1, 1]), width = 8, height = 8;
+    const gray = Uint8Array.from({ length: 64 }, (_, i) => (i % 8 >= 2 && i % 8 < 6 && i >= 16 && i < 48 ? 0 : 255));
+    const colors = Uint8ClampedArray.from({ length: 256 }, (_, i) => (i % 4 === 3 ? 255 : gray[i >> 2]));
+    for (const data of [gray, colors]) {
+      const pieces = cube.fracture(2, { pattern: "curves", image: { data, width, height } });
+      assert.equal(pieces.length, 2);
+      near(sum(pieces.map((piece) => piece.volume)), 1);
+      near(Math.min(...pieces.map((piece) => piece.volume)), 0.25, 0.05); // corners are cut, a pixel wide
+      free(pieces);
+    }
+    const fails = (options) => assert.throws(() => cube.fracture(2, options), { name: "InputError" });
+    fails({ pattern: "curves" });
+    fails({ image: { data: gray, width, height } });
+    fails({ pattern: "curves", image: { data: gray, width: 9, height } });
+    cube.delete();
+  },
   "a cube breaks into closed pieces whose volumes add up"() {
     const cube = k.shapes.block([1, 1, 1]);
     const pieces = cube.fracture(30, { seed: 7, hulls: true });

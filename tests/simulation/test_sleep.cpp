@@ -98,6 +98,13 @@ TEST_CASE("what sleeps wakes for a pull, a change of weight, a cut, an obstacle 
     run.change({.gravity = Vec3(2, 0, -4)});
     CHECK(wakes(run));
   }
+  SECTION("a blow") {
+    Simulation run = one_block();
+    REQUIRE(frames_to_sleep(run) <= 60);
+    run.strike({.point = {0.5, 0.5, 1}, .cells = 4});
+    CHECK(wakes(run));
+    CHECK(lowest(run) > -0.1);
+  }
   SECTION("a cut") {
     Simulation run = one_block();
     REQUIRE(frames_to_sleep(run) <= 60);

@@ -263,6 +263,8 @@ Checkpoint read_checkpoint(const KerfFile& file) {
     state.rest = {.anchor = read_points(file, "run/rest_anchor"), .time = file.read<double>("run/rest_time")};
     if (state.rest.anchor.size() != state.rest.time.size() || state.rest.time.size() > c.body.nodes.size())
       file.fail("the sections of rest have different lengths");
+    if (std::any_of(state.rest.time.begin(), state.rest.time.end(), [](double t) { return !(t >= 0); }))
+      file.fail("a node has rested for less than no time");
   }
   state.glued = read_glued(file);
   state.body_index = file.read<std::uint32_t>("run/part");

@@ -14,10 +14,11 @@ namespace {
 RunState checked(const Scene& scene, const Body& body, RunState state) {
   const std::size_t n = body.nodes.size();
   if (state.body_index.empty()) state.body_index.assign(n, 0);
+  const std::size_t rested = state.rest.time.size();
   const bool known =
       std::all_of(state.body_index.begin(), state.body_index.end(), [&](auto b) { return b < scene.bodies.size(); });
   if (state.motion.displacement.size() != n || state.motion.velocity.size() != n || state.body_index.size() != n ||
-      !known || state.fronts.size() != scene.blades.size())
+      rested > n || state.rest.anchor.size() != rested || !known || state.fronts.size() != scene.blades.size())
     throw InputError("the checkpoint does not belong to this scene");
   return state;
 }

@@ -39,11 +39,35 @@ std::vector<Box3> boxes_of(const SolidDiscretisation& solid, const State& motion
   return boxes;
 }
 
+// Whether something carries a component: its mean acceleration is small beside gravity, and its
+// mean velocity beside what a fall gains in the time of rest. What flies has either, even where it
+// turns, or falls as fast as its damping lets it.
+std::vector<std::uint8_t> is_carried(const SolidDiscretisation& solid, const State& motion, double fall,
+                                     const Vec3& gravity) {
+  constexpr double negligible_acceleration = 0.1, negligible_velocity = 0.01;  // of gravity, of a fall
+  std::vector<double> mass(solid.components, 0);
+  std::vector<Vec3> force(solid.components, Vec3::Zero()), momentum = force;
+  for (std::size_t i = 0; i < motion.acceleration.size(); ++i) {
+    mass[solid.component[i]] += solid.mass[i];
+    force[solid.component[i]] += solid.mass[i] * motion.acceleration[i];
+    momentum[solid.component[i]] += solid.mass[i] * motion.velocity[i];
+  }
+  std::vector<std::uint8_t> carried(solid.components, 0);
+  for (std::size_t c = 0; c < carried.size(); ++c)
+    carried[c] = mass[c] > 0 && force[c].norm() <= negligible_acceleration * mass[c] * gravity.norm() &&
+                 momentum[c].norm() <= negligible_velocity * mass[c] * fall * gravity.norm();
+  return carried;
+}
+
 }  // namespace
 
+// What flows is never at rest.
 bool Sleep::on() const {
+  const auto flows = [](const Material& m) { return m.viscosity > 0 || m.yield > 0; };
   return scene_.sleep > 0 && scene_.implicit && !scene_.fracture.on && state_.glued.bonds.empty() &&
-         scene_.loads.empty() && scene_.supports.empty();
+         scene_.loads.empty() && scene_.supports.empty() && !flows(scene_.material) &&
+         std::none_of(scene_.bodies.begin(), scene_.bodies.end(),
+                      [&](const SceneBody& body) { return body.material && flows(*body.material); });
 }
 
 void Sleep::begin_step(const Solid& solid, const std::vector<Vec3>& before, double dt, Environment& environment) {
@@ -54,7 +78,8 @@ void Sleep::begin_step(const Solid& solid, const std::vector<Vec3>& before, doub
   for (std::size_t i = 0; i < before.size(); ++i)
     if (motion.displacement[i] != before[i]) rest.time[i] = 0;
   clamped_ = environment.fixed;
-  mark_sleepers(solid, dt, environment);
+  dt_ = dt;
+  mark_sleepers(solid, environment);
   for (const Potential* potential : environment.contact) wake(solid, *potential, environment);
 }
 
@@ -65,10 +90,11 @@ void Sleep::wake(const Solid& solid, const Potential& potential, Environment& en
       state_.rest.time[e.node] = 0;
       any = true;
     }
-  if (any) mark_sleepers(solid, 0, environment);
+  if (any) mark_sleepers(solid, environment);
 }
 
-void Sleep::mark_sleepers(const Solid& whole, double dt, Environment& environment) {
+// A component that was awake beside others counts anew with them.
+void Sleep::mark_sleepers(const Solid& whole, Environment& environment) {
   const SolidDiscretisation& solid = SolidDiscretisation::of(whole);
   std::vector<double> time = times_of_rest(solid, state_.rest);
   environment.asleep.clear();
@@ -76,19 +102,26 @@ void Sleep::mark_sleepers(const Solid& whole, double dt, Environment& environmen
   all_ = false;
   if (std::none_of(time.begin(), time.end(), [&](double t) { return t >= scene_.sleep; })) return;
   UnionFind cluster(solid.components);
-  for (const auto& [a, b] : overlapping_pairs(boxes_of(solid, state_.motion, dt, environment.gravity)))
+  for (const auto& [a, b] : overlapping_pairs(boxes_of(solid, state_.motion, dt_, environment.gravity)))
     cluster.unite(a, b);
+  const std::vector<std::uint8_t> carried = is_carried(solid, state_.motion, scene_.sleep, environment.gravity);
   std::vector<double> least(time.size(), std::numeric_limits<double>::max());
+  std::vector<std::uint8_t> sleeps(time.size(), 1);  // of clusters
   for (std::uint32_t c = 0; c < time.size(); ++c) {
-    double& own = least[cluster.find(c)];
-    own = std::min(own, time[c]);
+    const auto own = cluster.find(c);
+    least[own] = std::min(least[own], time[c]);
+    sleeps[own] &= carried[c];
   }
-  for (std::uint32_t c = 0; c < time.size(); ++c) time[c] = least[cluster.find(c)];
-  if (std::none_of(time.begin(), time.end(), [&](double t) { return t >= scene_.sleep; })) return;
+  for (std::uint32_t c = 0; c < time.size(); ++c) {
+    time[c] = least[cluster.find(c)];
+    sleeps[c] = sleeps[cluster.find(c)] && time[c] >= scene_.sleep;
+  }
+  for (std::size_t i = 0; i < solid.size(); ++i) state_.rest.time[i] = time[solid.component[i]];
+  if (std::find(sleeps.begin(), sleeps.end(), 1) == sleeps.end()) return;
   environment.asleep.assign(solid.size(), 0);
   State& motion = state_.motion;
   for (std::size_t i = 0; i < solid.size(); ++i) {
-    if (time[solid.component[i]] < scene_.sleep) continue;
+    if (!sleeps[solid.component[i]]) continue;
     environment.asleep[i] = environment.fixed[i] = 1;
     motion.velocity[i].setZero();
     if (!motion.acceleration.empty()) motion.acceleration[i].setZero();

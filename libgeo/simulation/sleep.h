@@ -13,8 +13,8 @@ namespace geo {
 
 /// Which parts of the bodies sleep. Components of the graph whose boxes meet are a cluster. It
 /// rests while each of its nodes stays within a twentieth of a spacing of a place, and sleeps after
-/// Scene::sleep seconds of that. It wakes where it is cut, where its clamps move, where anything
-/// but weight and what stands still acts on it, and where something that is awake comes near.
+/// Scene::sleep seconds of that, unless something in it flies or flows. It wakes where it is cut, where its clamps
+/// move, where anything but weight and what stands still acts on it, and where something that is awake comes near.
 /// Refers to scene and state.
 class Sleep {
  public:
@@ -41,11 +41,12 @@ class Sleep {
   void wake_all() { state_.rest = {}; }
 
  private:
-  void mark_sleepers(const Solid& solid, double dt, Environment& environment);
+  void mark_sleepers(const Solid& solid, Environment& environment);
 
   const Scene& scene_;
   RunState& state_;
   std::vector<std::uint8_t> clamped_;  // per node: by the environment, before what sleeps
+  double dt_ = 0;                      // s: of this step
   bool all_ = false;
 };
 

@@ -60,20 +60,20 @@ TimeLoop::TimeLoop(RunData& run)
   apply_changes(run.state.time);
 }
 
-// Applies the changes of the scene's values that are due.
-void TimeLoop::apply_changes(double time) {
-  if (!run_.changes.apply(run_.scene, time)) return;
+// Applies the changes of the scene's values that are due. Returns whether there were any.
+bool TimeLoop::apply_changes(double time) {
+  if (!run_.changes.apply(run_.scene, time)) return false;
   run_.solid.set_materials(materials_of(run_.scene, run_.state.body_index));
   collisions_.set_friction(run_.scene.contact.friction);
   loads_.follow_scene();
-  sleep_.wake_all();
+  return true;
 }
 
 FrameStats TimeLoop::advance_frame(const Progress& progress) {
   Scene& scene = run_.scene;
   RunState& state = run_.state;
   FrameStats stats;
-  apply_changes(state.frame * (1 / scene.frame_rate));
+  if (apply_changes(state.frame * (1 / scene.frame_rate))) sleep_.wake_all();
   const double frame_time = 1 / scene.frame_rate;
   const int steps = scene.steps_per_frame();
   const auto time = [&](double s) { return (state.frame + s / steps) * frame_time; };
@@ -121,7 +121,7 @@ void TimeLoop::advance(int s, double dt, const Time& time, FrameStats& stats) {
 // Too long: for what breaks in it. Not found: by Newton's method.
 TimeLoop::Outcome TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   run_.state.time = step.begin;
-  apply_changes(step.begin);
+  if (apply_changes(step.begin)) sleep_.wake_all();
   const std::vector<Vec3> before = run_.state.motion.displacement;
   std::optional<State> start;  // to go back to
   if (may_break()) start = run_.state.motion;
@@ -129,7 +129,7 @@ TimeLoop::Outcome TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   if (sleep_.on()) {
     if (GrippedNodes::change(run_.scene.grips, step.begin, step.end)) sleep_.wake_all();
     sleep_.begin_step(run_.solid.nodes(), before, step.dt, loads_.environment());
-    if (sleep_.all() && has_stepped_ && !cuts_.any_at(step.begin) && !Obstacles::any_moves(run_.scene, step)) {
+    if (sleep_.all() && last_step_.steps > 0 && !cuts_.any_at(step.begin) && !Obstacles::any_moves(run_.scene, step)) {
       sleep_on(step, stats);
       return Outcome::taken;
     }
@@ -151,18 +151,18 @@ TimeLoop::Outcome TimeLoop::step(const TimeStep& step, FrameStats& stats) {
   return Outcome::taken;
 }
 
-// A step in which all sleeps: forces and energy are those of the frame before, which a loop that
-// has just begun does not know.
+// A step in which all sleeps: forces and energy are those of the last one that was computed.
 void TimeLoop::sleep_on(const TimeStep& step, FrameStats& stats) {
-  const FrameStats& last = run_.state.total;
   const double share = step.dt * run_.scene.frame_rate;
   const auto add = [&](std::vector<Vec3>& to, const std::vector<Vec3>& from) {
-    to.resize(std::max(to.size(), from.size()), Vec3::Zero());
+    to.resize(from.size(), Vec3::Zero());
     for (std::size_t i = 0; i < from.size(); ++i) to[i] += share * from[i];
   };
-  if (stats.steps == 0) stats.energy = last.energy;
-  add(stats.obstacle_force, last.obstacle_force);
-  add(stats.obstacle_torque, last.obstacle_torque);
+  add(stats.obstacle_force, last_step_.obstacle_force);
+  add(stats.obstacle_torque, last_step_.obstacle_torque);
+  stats.blade_force.resize(run_.scene.blades.size(), Vec3::Zero());
+  stats.pull_force.resize(run_.scene.pulls.size(), Vec3::Zero());
+  stats.energy = last_step_.energy;
   ++stats.steps;
   run_.state.time = step.end;
 }
@@ -246,9 +246,12 @@ void TimeLoop::take(const StepReport& report, const TimeStep& step, FrameStats& 
   loads_.end_step(step, share, motion, stats);
   stats.fracture.spent += cohesion_.end_step(motion.displacement, run_.state.glued);
   obstacles_.add_reactions(motion, share, stats);
+  last_step_ = {};
+  obstacles_.add_reactions(motion, 1, last_step_);
+  last_step_.energy = report.energy;
+  last_step_.steps = 1;
   if (skin_.any()) skin_.end_step(motion.displacement, share, stats);
   if (sleep_.on()) sleep_.end_step(run_.solid.nodes(), step.dt);
-  has_stepped_ = true;
   ++stats.steps;
   stats.energy = report.energy;
 }

@@ -39,7 +39,7 @@ class TimeLoop {
   const Collisions& collisions() const { return collisions_; }
 
  private:
-  void apply_changes(double time);
+  bool apply_changes(double time);
   template <class Time>
   void advance(int step, double dt, const Time& time, FrameStats& stats);
   // The fate of a time step. One that was not taken has changed nothing.
@@ -71,7 +71,7 @@ class TimeLoop {
   CohesiveWalls cohesion_;
   SkinLoads skin_;
   Sleep sleep_;
-  bool has_stepped_ = false;  // RunState::total has forces and energy
+  FrameStats last_step_;  // forces and energy of the last computed step; no steps: none was
 };
 
 }  // namespace geo

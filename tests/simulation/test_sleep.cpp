@@ -170,6 +170,55 @@ TEST_CASE("what falls on a sleeping block moves it, and far away another sleeps 
   REQUIRE(frames_to_sleep(run, 200) <= 200);
 }
 
+TEST_CASE("what has lost its support falls, and what turns in the air does not stay there") {
+  SECTION("support") {
+    Simulation run = run_of("[[body]]\nmesh = 'a'\nspacing = 0.25\nposition = [0, 0, 3.01]\n",
+                            "[[obstacle]]\nnormal = [0, 0, 1]\nposition = [0, 0, 3]\nkeys = [[0, 0, 0, 0, 0, 0, 1, 0], "
+                            "[5, 0, 0, 0, 0, 0, 1, 0], [5.05, 0, 0, -8, 0, 0, 1, 0]]\n",
+                            {make_block({1, 1, 1}, 0.25)});
+    REQUIRE(frames_to_sleep(run) <= 60);
+    while (run.state().time < 8) run.advance_frame();
+    CHECK(lowest(run) < 0.2);
+  }
+  SECTION("a body that leaves") {
+    Simulation run = run_of(
+        "[[body]]\nmesh = 'a'\nspacing = 0.25\n[[body]]\nmesh = 'b'\nspacing = 0.25\nposition = "
+        "[0, 0, 1.01]\n[[grip]]\nbox = [-1, -1, -1, 2, 2, 0.9]\nkeys = [[0, 0, 0, 0, 0, 0, 1, 0], "
+        "[5, 0, 0, 0, 0, 0, 1, 0], [5.1, 4, 0, 0, 0, 0, 1, 0]]\n",
+        "", {make_block({1, 1, 1}, 0.25), make_block({1, 1, 1}, 0.25)});
+    REQUIRE(frames_to_sleep(run) <= 60);
+    while (run.state().time < 8) run.advance_frame();
+    double highest = 0;
+    for (const Vec3& p : run.surface().vertices) highest = std::max(highest, p.z());
+    CHECK(highest < 1.6);
+  }
+  SECTION("in the air") {
+    Simulation run = run_of("[[body]]\nmesh = 'a'\nspacing = 25\nvelocity = [0, 0, 9.81]\nposition = [0, 0, 1]\n", "",
+                            {make_block({100, 100, 100}, 25)});
+    for (int frame = 0; frame < 60; ++frame) {
+      run.advance_frame();
+      if (lowest(run) > 0.1) CHECK(run.state().motion.velocity[0].norm() > 0);
+    }
+    CHECK(lowest(run) < 1);
+  }
+}
+
+TEST_CASE("forces of what sleeps do not depend on steps of a frame, checkpoints and past changes") {
+  const auto force = [](int resumed) {
+    Simulation run = one_block("[[change]]\ntime = 0.2\nfriction = 0.4\n[[change]]\ntime = 0.3\nstep = 0.0125\n");
+    REQUIRE(frames_to_sleep(run) <= 80);
+    for (int k = 0; k < resumed; ++k) {
+      run = read_back(run.scene(), bytes(run));
+      CHECK(run.advance_frame().kinetic == 0);
+    }
+    run.advance_frame();
+    return run.advance_frame().obstacle_force.at(0).z();
+  };
+  const double once = force(0);
+  CHECK(once == Approx(-9810).epsilon(0.05));
+  CHECK(force(2) == Approx(once).epsilon(1e-6));
+}
+
 TEST_CASE("a run whose pieces sleep goes on from a checkpoint as without, with any threads") {
   Simulation run = one_block();
   for (int frame = 0; frame < 6; ++frame) run.advance_frame();

@@ -13,7 +13,7 @@ namespace live {
 
 namespace {
 
-constexpr double rest_before_sleep = 0.5;  // s: longer than a hand rests between two strokes is of no use
+constexpr double rest_before_sleep = 1;  // s: what swings slowly has moved on by then
 
 }  // namespace
 

@@ -40,8 +40,8 @@ std::vector<Box3> boxes_of(const SolidDiscretisation& solid, const State& motion
 }
 
 // Whether something carries a component: its mean acceleration is small beside gravity, and its
-// mean velocity beside what a fall gains in the time of rest. What flies has either, even where it
-// turns, or falls as fast as its damping lets it.
+// mean velocity beside what a fall gains in the time of rest. A body that flies has
+// either, even where it turns, or falls as fast as its damping lets it.
 std::vector<std::uint8_t> is_carried(const SolidDiscretisation& solid, const State& motion, double fall,
                                      const Vec3& gravity) {
   constexpr double negligible_acceleration = 0.1, negligible_velocity = 0.01;  // of gravity, of a fall
@@ -61,7 +61,7 @@ std::vector<std::uint8_t> is_carried(const SolidDiscretisation& solid, const Sta
 
 }  // namespace
 
-// What flows is never at rest.
+// Material that flows is never at rest.
 bool Sleep::on() const {
   const auto flows = [](const Material& m) { return m.viscosity > 0 || m.yield > 0; };
   return scene_.sleep > 0 && scene_.implicit && !scene_.fracture.on && state_.glued.bonds.empty() &&

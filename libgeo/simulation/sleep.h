@@ -13,9 +13,9 @@ namespace geo {
 
 /// Which parts of the bodies sleep. Components of the graph whose boxes meet are a cluster. It
 /// rests while each of its nodes stays within a twentieth of a spacing of a place, and sleeps after
-/// Scene::sleep seconds of that, unless something in it flies or flows. It wakes where it is cut, where its clamps
-/// move, where anything but weight and what stands still acts on it, and where something that is awake comes near.
-/// Refers to scene and state.
+/// Scene::sleep seconds of that, unless something in it flies or flows. It wakes where it is cut,
+/// where its clamps move, where anything but weight and what stands still acts on it, and where
+/// something that is awake comes near. Refers to scene and state.
 class Sleep {
  public:
   /// Sleep in a run whose scene has it.

@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/union_find.h"
 #include "geometry/distance.h"
 #include "kerf/contact.h"
 #include "kerf/crack.h"
@@ -44,40 +44,26 @@ TriangleMesh walls(const TriangleMesh& piece, const Vec3& impact, int cells, dou
   return make_score(Complex::from_skin(block), options).sheet;
 }
 
-// Sets of sides that are joined on the surface, or by a new wall between them.
-class JoinedSides {
- public:
-  explicit JoinedSides(const Complex& complex) : root_(2 * complex.face_count()) {
-    std::iota(root_.begin(), root_.end(), std::size_t(0));
-  }
-  void join(Side a, Side b) { root_[find(row(a))] = find(row(b)); }
-  std::size_t find(std::size_t i) {
-    while (root_[i] != i) {
-      root_[i] = root_[root_[i]];
-      i = root_[i];
-    }
-    return i;
-  }
-
- private:
-  std::vector<std::size_t> root_;
-};
-
 // Takes new walls out again that are in other pieces than the one with this number.
 void keep_within(Grown& grown, const Pieces& pieces, std::int32_t piece) {
-  JoinedSides joined(grown.now);
+  // Sides are joined on the surface, or by a new wall between them.
+  UnionFind joined(2 * grown.now.face_count());
+  const auto join = [&](Side a, Side b) {
+    joined.unite(static_cast<std::uint32_t>(row(a)), static_cast<std::uint32_t>(row(b)));
+  };
+  const auto set_of = [&](Side s) { return joined.find(static_cast<std::uint32_t>(row(s))); };
   grown.for_each_side([&](Side s) {
-    for (int k = 0; k < 3; ++k) joined.join(s, grown.now.neighbor(s, k));
-    if (!grown.parent[s.face.index()].valid()) joined.join({s.face, 0}, {s.face, 1});
+    for (int k = 0; k < 3; ++k) join(s, grown.now.neighbor(s, k));
+    if (!grown.parent[s.face.index()].valid()) join({s.face, 0}, {s.face, 1});
   });
   std::vector<bool> is_hit(grown.parent.size() * 2, false);
   grown.for_each_side([&](Side s) {
     const FaceId parent = grown.parent[s.face.index()];
-    if (parent.valid() && pieces.of_side[row({parent, s.which})] == piece) is_hit[joined.find(row(s))] = true;
+    if (parent.valid() && pieces.of_side[row({parent, s.which})] == piece) is_hit[set_of(s)] = true;
   });
   ComplexEdit edit;
   for (std::uint32_t f = 0; f < grown.now.face_count(); ++f)
-    if (grown.now.alive(FaceId(f)) && !grown.parent[f].valid() && !is_hit[joined.find(row({FaceId(f), 0}))])
+    if (grown.now.alive(FaceId(f)) && !grown.parent[f].valid() && !is_hit[set_of({FaceId(f), 0})])
       edit.removed_faces.push_back(FaceId(f));
   if (!edit.empty()) grown.now.apply(edit);
 }

@@ -153,18 +153,22 @@ TimeLoop::Outcome TimeLoop::step(const TimeStep& step, FrameStats& stats) {
 
 // A step in which all sleeps: forces and energy are those of the last one that was computed.
 void TimeLoop::sleep_on(const TimeStep& step, FrameStats& stats) {
-  const double share = step.dt * run_.scene.frame_rate;
+  add_obstacle_forces(step.dt * run_.scene.frame_rate, stats);
+  stats.blade_force.resize(run_.scene.blades.size(), Vec3::Zero());
+  stats.pull_force.resize(run_.scene.pulls.size(), Vec3::Zero());
+  stats.energy = last_step_.energy;
+  ++stats.steps;
+  run_.state.time = step.end;
+}
+
+// Those of the last computed step, times `share`.
+void TimeLoop::add_obstacle_forces(double share, FrameStats& stats) const {
   const auto add = [&](std::vector<Vec3>& to, const std::vector<Vec3>& from) {
     to.resize(from.size(), Vec3::Zero());
     for (std::size_t i = 0; i < from.size(); ++i) to[i] += share * from[i];
   };
   add(stats.obstacle_force, last_step_.obstacle_force);
   add(stats.obstacle_torque, last_step_.obstacle_torque);
-  stats.blade_force.resize(run_.scene.blades.size(), Vec3::Zero());
-  stats.pull_force.resize(run_.scene.pulls.size(), Vec3::Zero());
-  stats.energy = last_step_.energy;
-  ++stats.steps;
-  run_.state.time = step.end;
 }
 
 bool TimeLoop::is_too_long(const TimeStep& step, const State& before, FrameStats& stats) {
@@ -245,11 +249,11 @@ void TimeLoop::take(const StepReport& report, const TimeStep& step, FrameStats& 
   const double share = step.dt * run_.scene.frame_rate;
   loads_.end_step(step, share, motion, stats);
   stats.fracture.spent += cohesion_.end_step(motion.displacement, run_.state.glued);
-  obstacles_.add_reactions(motion, share, stats);
   last_step_ = {};
   obstacles_.add_reactions(motion, 1, last_step_);
   last_step_.energy = report.energy;
   last_step_.steps = 1;
+  add_obstacle_forces(share, stats);
   if (skin_.any()) skin_.end_step(motion.displacement, share, stats);
   if (sleep_.on()) sleep_.end_step(run_.solid.nodes(), step.dt);
   ++stats.steps;

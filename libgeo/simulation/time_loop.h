@@ -46,6 +46,7 @@ class TimeLoop {
   enum class Outcome { taken, too_long, not_found };
   Outcome step(const TimeStep& step, FrameStats& stats);
   void sleep_on(const TimeStep& step, FrameStats& stats);
+  void add_obstacle_forces(double share, FrameStats& stats) const;
   void add_obstacles(const TimeStep& step, double stopping);
   std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);
   StepReport move_nodes(const TimeStep& step, FrameStats& stats);

@@ -228,8 +228,10 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
     more.push_back(kerf_array("run/rest_anchor", coordinates(state.rest.anchor), 3));
     more.push_back(kerf_array("run/rest_time", std::span<const double>(state.rest.time)));
   }
-  const std::vector<Vec3> plastic = columns_of(state.motion.plastic), rotation = columns_of(state.motion.rotation);
+  const std::vector<Vec3> plastic = columns_of(state.motion.plastic), rotation = columns_of(state.motion.rotation),
+                          prestretch = columns_of(state.motion.prestretch);
   if (!plastic.empty()) more.push_back(kerf_array("run/plastic", coordinates(plastic), 3));
+  if (!prestretch.empty()) more.push_back(kerf_array("run/prestretch", coordinates(prestretch), 3));
   const GluedNumbers glued(state.glued);
   if (!state.glued.bonds.empty()) {
     more.push_back(kerf_array("run/glue_points", coordinates(state.glued.points), 3));
@@ -258,6 +260,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   if (file.sections().count("run/acceleration") != 0) state.motion.acceleration = read_points(file, "run/acceleration");
   state.motion.plastic = read_matrices(file, "run/plastic");
   state.motion.rotation = read_matrices(file, "run/rotation");
+  state.motion.prestretch = read_matrices(file, "run/prestretch");
   state.surface = read_points(file, "run/surface");
   if (file.sections().count("run/rest_time") != 0) {
     state.rest = {.anchor = read_points(file, "run/rest_anchor"), .time = file.read<double>("run/rest_time")};

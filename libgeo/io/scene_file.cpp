@@ -93,6 +93,23 @@ void read_rotation(TomlTable& t, Pose& place, const std::string& what) {
   place.rotation = turn.at(0).rotation;
 }
 
+// `own`: of one body, which cannot say whether the shapes of all are those under load.
+void read_prestretch(TomlTable& t, Prestretch& p, bool own) {
+  if (const auto* node = t.find("stretch"); node && node->is_number()) {
+    double all = 1;
+    t.get("stretch", all, 0.1, 10);
+    p.stretch.setConstant(all);
+  } else {
+    t.get("stretch", p.stretch);
+    if (p.stretch.minCoeff() < 0.1 || p.stretch.maxCoeff() > 10) t.fail(*node, "a stretch lies between 0.1 and 10");
+  }
+  t.get("skin", p.skin, 0.1, 10);
+  t.get("depth", p.depth, 0, 1e12);
+  if (const auto* node = t.find("skin"); node && !(p.depth > 0))
+    t.fail(*node, "give the 'depth' of the layer below the skin that is stretched, too");
+  if (own) refuse_shared(t, "prestretch", {"loaded"});
+}
+
 void read_body_table(TomlTable& t, Scene& s) {
   SceneBody body;
   body.name = "body" + std::to_string(s.bodies.size() + 1);
@@ -115,6 +132,7 @@ void read_body_table(TomlTable& t, Scene& s) {
   t.get("velocity", body.velocity);
   t.get("spin", body.spin);
   t.section("material", [&](TomlTable& own) { read_material(own, body.material.emplace(s.material), true); });
+  t.section("prestretch", [&](TomlTable& own) { read_prestretch(own, body.prestretch.emplace(s.prestretch), true); });
   if (const auto* node = t.find("fracture"); node && !s.fracture.on)
     t.fail(*node,
            "'body.fracture' says how strong one body is; give the scene a [fracture], too, by which bodies break");
@@ -166,6 +184,12 @@ void read_blade(TomlTable& t, Scene& s, Files& files) {
   if (blade.thickness > 0 && !(blade.back.norm() > 0))
     t.fail("a blade with 'thickness' needs 'back': the way from its edge to its back");
   t.get("stiffness", blade.stiffness, 0, 1e12);
+  t.get("friction", blade.friction, 0, 10);
+  if (blade.friction > 0 && !(blade.thickness > 0))
+    t.fail(*t.find("friction"), "a blade without 'thickness' has no flanks; give it 'back' and 'thickness'");
+  t.get("resistance", blade.resistance, 0, 1e12);
+  if (blade.resistance > 0 && !s.implicit)
+    t.fail(*t.find("resistance"), "blades have a resistance in implicit steps only; leave out 'time.integrator'");
   t.get("limit", blade.limit, 1e-3, 1e9);
   s.blades.push_back(std::move(blade));
 }
@@ -346,6 +370,10 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     t.get("cracks_per_step", s.fracture.cracks_per_step, 0, 1000000);
     t.get("start", s.fracture.start, 0, 1e9);
     for (const auto& v : t.rows("off", 6)) s.fracture.off.push_back({Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])});
+  });
+  top.section("prestretch", [&](TomlTable& t) {
+    read_prestretch(t, s.prestretch, false);
+    t.get("loaded", s.loaded);
   });
   const auto* body = top.find("body");
   if (!body) top.missing("body", "write [body], and in it mesh = \"MODEL\"");

@@ -67,6 +67,7 @@ class SceneWriter {
   }
 
   void material(const Material& m, bool own);
+  void prestretch(const Prestretch& p);
   void strength(const Strength& s);
   void breakage(const Breakage& b);
   void fracture(const FractureOptions& f);
@@ -100,6 +101,13 @@ void SceneWriter::material(const Material& m, bool own) {
   key("yield", m.yield);
   key("creep", m.creep);
   key("most_plastic", m.max_plastic);
+}
+
+void SceneWriter::prestretch(const Prestretch& p) {
+  key("stretch", p.stretch);
+  if (!(p.depth > 0)) return;
+  key("skin", p.skin);
+  key("depth", p.depth);
 }
 
 void SceneWriter::strength(const Strength& s) {
@@ -152,6 +160,10 @@ void SceneWriter::body(const SceneBody& b, const Scene& s, std::size_t index) {
     table("[body.material]");
     material(*b.material, true);
   }
+  if (b.prestretch) {
+    table("[body.prestretch]");
+    prestretch(*b.prestretch);
+  }
   if (!s.fracture.per_body.empty()) {
     table("[body.fracture]");
     breakage(s.fracture.per_body.at(index));
@@ -186,6 +198,8 @@ void SceneWriter::blade(const Blade& b) {
   key("back", b.back);
   key("thickness", b.thickness);
   key("stiffness", b.stiffness);
+  key("friction", b.friction);
+  key("resistance", b.resistance);
   key("limit", b.limit);
   keys(b.motion);
 }
@@ -272,6 +286,11 @@ void SceneWriter::write(const Scene& s) {
   key("gravity", s.gravity);
   table("[material]");
   material(s.material, false);
+  if (s.prestretch != Prestretch{} || s.loaded) {
+    table("[prestretch]");
+    prestretch(s.prestretch);
+    if (s.loaded) flag("loaded", true);
+  }
   if (s.fracture.on) fracture(s.fracture);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) body(s.bodies[b], s, b);
   if (s.ground) {

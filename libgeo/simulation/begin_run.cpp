@@ -1,5 +1,5 @@
 // begin_run() of kerf/simulation.h. Order: sample and build the body, insert the prescored cracks,
-// then assign velocities. Nodes that a crack inserts belong to the body of their donor.
+// then assign velocities and prestretch. Nodes that a crack inserts belong to the body of their donor.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,6 +13,7 @@
 #include "simulation/fracture_front.h"
 #include "simulation/glued_walls.h"
 #include "simulation/next_crack.h"
+#include "simulation/prestretch.h"
 #include "simulation/scene_body.h"
 
 namespace geo {
@@ -154,6 +155,8 @@ RunStart begin_run(const Scene& scene, const PlacedModels& models, const Progres
   prescore(to, progress);
   glue_cells(to, progress);
   begin_motion(scene, run.body, run.state);
+  begin_prestretch(scene, models, run.body, run.state);
+  if (scene.loaded) bear_load(scene, run, progress);
   return run;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kerf/parallel.h"
+#include "simulation/edge_resistance.h"
 #include "simulation/edge_retreat.h"
 #include "simulation/edge_runs.h"
 #include "simulation/existing_cuts.h"
@@ -13,6 +14,28 @@
 #include "simulation/timed.h"
 
 namespace geo {
+namespace {
+
+// Where an edge presses on its front, the front stays behind by edge_lead.
+void stay_behind(const FrontState& front, std::span<const double> spacing, std::vector<Vec3>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const Vec3& from = front.points[i].position;
+    const double way = (to[i] - from).norm(), lead = edge_lead * spacing[i];
+    to[i] = way > lead ? Vec3(from + (1 - lead / way) * (to[i] - from)) : from;
+  }
+}
+
+// Undeformed area of faces, model units².
+double area_of(const Complex& surface, std::span<const FaceId> faces) {
+  double area = 0;
+  for (const FaceId f : faces) {
+    const auto [a, b, c] = surface.corners(f);
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return area;
+}
+
+}  // namespace
 
 BladeCuts::BladeCuts(const Scene& scene, const Body& body, RunState& state, CrackWriter& writer)
     : scene_(scene), body_(body), state_(state), writer_(writer) {}
@@ -113,6 +136,7 @@ BladeCuts::Advance BladeCuts::plan_advance(const EdgeFront& front, std::span<con
     a.to.push_back(anchor.corrected(p.at, p.material, p.spacing));
     a.spacing.push_back(p.spacing);
   }
+  if (blade.resistance > 0) stay_behind(a.edge.front, a.spacing, a.to);
   a.retreating = hold_retreating(body_.surface, a.edge.front, a.spacing, a.to);
   cross_first(body_.surface, a.edge.front, a.spacing, a.to);
   const std::vector<Vec3> resolved = places.resolved(a.to);
@@ -142,6 +166,7 @@ void BladeCuts::make_cut(std::size_t b, PlannedCut plan, FrameStats& stats) {
     advance.edge.front = std::move(written->front);
     collapse(advance.edge, plan.runs[r]);
     state_.fronts[b][r] = std::move(advance.edge);
+    stats.cut_energy += scene_.blades[b].resistance * area_of(body_.surface, written->faces);
     stats.sheet.deviation = std::max(stats.sheet.deviation, advance.deviation);
     const double lowest = 0.1 * *std::min_element(advance.spacing.begin(), advance.spacing.end());
     stats.sheet.turning = std::max(stats.sheet.turning, sheet_turning(body_.surface, written->faces, lowest));

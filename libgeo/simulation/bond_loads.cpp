@@ -13,7 +13,7 @@
 #include "body/locate.h"
 #include "geometry/distance.h"
 #include "kerf/parallel.h"
-#include "mechanics/material/plasticity.h"
+#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "sampling/node_grid.h"
 
@@ -311,18 +311,20 @@ std::vector<BondLoads::PointStress> BondLoads::stresses(const Solid& solid, cons
   parallel_for(points_.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::uint32_t block = ~0u;
     std::vector<Mat3> gradient;
+    PointRelaxation relaxation;
     for (std::size_t p = begin; p < end; ++p) {
       if (points_[p].block != block) {
         block = points_[p].block;
         gradient = all.gradients(block, state.displacement);
+        relaxation = relaxation_of(all, block, state);
       }
       const Mat3 f = Mat3::Identity() + gradient[points_[p].index];
       const Material& material = solid.materials()[all.blocks[block].points[points_[p].index].material];
-      if (state.plastic.empty()) {
+      if (relaxation.empty()) {
         result[p].nominal = stress(material, f);
       } else {
-        const Mat3 relaxed = inverse_plastic_stretch(state.plastic[all.first_point(block) + points_[p].index]);
-        result[p].nominal = stress(material, f * relaxed) * relaxed;
+        const Mat3 relaxed = relaxation.at(points_[p].index);
+        result[p].nominal = relaxation.share_at(points_[p].index) * stress(material, f * relaxed) * relaxed;
       }
       // The cofactors of F (Nanson's formula).
       for (int c = 0; c < 3; ++c) result[p].area.col(c) = f.col((c + 1) % 3).cross(f.col((c + 2) % 3));

@@ -9,16 +9,6 @@
 namespace geo {
 namespace {
 
-// True where the way from a front point to `to` leads back along the sheet of the crack.
-bool retreats(const Complex& surface, const FrontState& front, const Vec3& from, const Vec3& to, double spacing) {
-  const auto behind = [&](const Vec3& y, double slope) {
-    const double ahead = distance_from_front(front, y);
-    return ahead > 0 && distance_from_crack(surface, front.crack, y, beside_own_sheet * spacing) < slope * ahead;
-  };
-  // Half the way: a blade that is pulled out ends in air, but its way begins along the sheet.
-  return behind(to, 0.5) || behind(0.5 * (from + to), 0.1);
-}
-
 // Holds points whose neighbours in the material are held: one point that goes on alone, since the
 // material trembles, folds the sheet. `solid`: the points in the material, ascending.
 void hold_lone_points(const std::vector<std::size_t>& solid, std::vector<std::uint8_t>& held) {
@@ -31,6 +21,15 @@ void hold_lone_points(const std::vector<std::size_t>& solid, std::vector<std::ui
 
 }  // namespace
 
+bool leads_back(const Complex& surface, const FrontState& front, const Vec3& from, const Vec3& to, double spacing) {
+  const auto behind = [&](const Vec3& y, double slope) {
+    const double ahead = distance_from_front(front, y);
+    return ahead > 0 && distance_from_crack(surface, front.crack, y, beside_own_sheet * spacing) < slope * ahead;
+  };
+  // Half the way: a blade that is pulled out ends in air, but its way begins along the sheet.
+  return behind(to, 0.5) || behind(0.5 * (from + to), 0.1);
+}
+
 std::size_t hold_retreating(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                             std::vector<Vec3>& to) {
   const std::size_t n = front.points.size();
@@ -39,7 +38,7 @@ std::size_t hold_retreating(const Complex& surface, const FrontState& front, std
   for (std::size_t i = 0; i < n; ++i) {
     if (!front.points[i].id.valid()) continue;
     solid.push_back(i);
-    held[i] = retreats(surface, front, front.points[i].position, to[i], spacing[i]);
+    held[i] = leads_back(surface, front, front.points[i].position, to[i], spacing[i]);
   }
   if (solid.empty()) return 0;
   hold_lone_points(solid, held);

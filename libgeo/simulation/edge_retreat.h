@@ -18,4 +18,8 @@ namespace geo {
 std::size_t hold_retreating(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                             std::vector<Vec3>& to);
 
+/// Whether the way from a point of a front to `to` leads back along the sheet of its crack.
+/// `spacing`: of the nodes there.
+bool leads_back(const Complex& surface, const FrontState& front, const Vec3& from, const Vec3& to, double spacing);
+
 }  // namespace geo

@@ -12,6 +12,7 @@
 #include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "geometry/distance.h"
+#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "simulation/fracture_front.h"
 #include "simulation/fracture_tip.h"
@@ -155,6 +156,7 @@ void InteractionIntegral::add_points(const Domain& domain, const Mat3& rotation,
   const Vec3& tip = domain.tip.at;
   const Box3 box = Box3{tip, tip}.grown(domain.reach());
   std::vector<Mat3> gradient;
+  PointRelaxation relaxation;
   for (std::size_t b = 0; b < points.blocks.size(); ++b) {
     const PointBlock& block = points.blocks[b];
     if (!block.box.meets(box)) continue;
@@ -163,10 +165,14 @@ void InteractionIntegral::add_points(const Domain& domain, const Mat3& rotation,
       const MaterialPoint& point = block.points[p];
       const Vec3 x = domain.local(point.position);
       if (!domain.holds(x) || point.quality == MomentQuality::singular) continue;
-      if (gradient.empty()) gradient = points.gradients(b, motion_.displacement);
+      if (gradient.empty()) {
+        gradient = points.gradients(b, motion_.displacement);
+        relaxation = relaxation_of(points, b, {.prestretch = motion_.prestretch});
+      }
       const Material& material = solid_.materials()[point.material];
-      const Mat3 slope = domain.axes.transpose() *
-                         (rotation.transpose() * (Mat3::Identity() + gradient[p]) - Mat3::Identity()) * domain.axes;
+      const Mat3 slope =
+          domain.axes.transpose() *
+          (rotation.transpose() * (Mat3::Identity() + gradient[p]) * relaxation.at(p) - Mat3::Identity()) * domain.axes;
       const Mat3 strain = 0.5 * (slope + slope.transpose());
       const Mat3 stress = material.lambda() * strain.trace() * Mat3::Identity() + 2 * material.mu() * strain;
       const double r = x.head<2>().norm(), angle = angle_of(x.y(), x.x());

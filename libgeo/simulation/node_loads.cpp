@@ -22,14 +22,14 @@ void NodeLoads::begin_step(const TimeStep& step, const Solid& solid, State& moti
   if (is_behind_) follow_scene();
   gripped_.place(scene_.grips, body_.nodes, step.end, environment_.fixed, motion);
   environment_.contact.clear();
-  add_wedges(step.begin, solid, motion);
+  add_wedges(step, solid, motion);
   pulls_.begin_step(scene_.pulls, body_, solid, step.begin, step.end);
   if (!wedges_.empty()) environment_.contact.push_back(&wedges_);
   if (!pulls_.empty()) environment_.contact.push_back(&pulls_);
 }
 
 // The wedges of thick blades are where their cut is: the edge cuts on at the end of the step.
-void NodeLoads::add_wedges(double time, const Solid& solid, const State& motion) {
+void NodeLoads::add_wedges(const TimeStep& step, const Solid& solid, const State& motion) {
   wedges_ = {};
   const BladeNodes nodes{.position = body_.nodes.position,
                          .displacement = motion.displacement,
@@ -38,12 +38,18 @@ void NodeLoads::add_wedges(double time, const Solid& solid, const State& motion)
                          .mass = [&](std::size_t i) { return solid.mass(NodeId(i)); }};
   for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
     const Blade& blade = scene_.blades[b];
-    if (!(blade.thickness > 0) || !blade.active(time)) continue;
-    const BladeWedge wedge{.edge = blade.at(time),
+    if (!(blade.thickness > 0) || !blade.active(step.begin)) continue;
+    const Pose begin = blade.motion.at(step.begin), end = blade.motion.at(step.end);
+    const BladeWedge wedge{.edge = blade.at(step.begin),
                            .closed = blade.closed,
-                           .back = blade.motion.at(time).rotation * blade.back,
+                           .back = begin.rotation * blade.back,
                            .thickness = blade.thickness,
-                           .stiffness = blade.stiffness};
+                           .stiffness = blade.stiffness,
+                           .friction = blade.friction,
+                           .way = [=](const Vec3& x) {
+                             const Vec3 local = begin.rotation.conjugate() * (x - begin.position);
+                             return Vec3(end * local - x);
+                           }};
     wedges_.add(b, wedge, nodes);
   }
 }
@@ -54,7 +60,7 @@ void NodeLoads::end_step(const TimeStep& step, double share, State& motion, Fram
   const auto on_blades = wedges_.reaction(motion.displacement, scene_.blades.size());
   for (std::size_t b = 0; b < on_blades.size(); ++b) stats.blade_force[b] += share * on_blades[b];
   stats.pull_force.resize(scene_.pulls.size(), Vec3::Zero());
-  stats.work += pulls_.work(motion.displacement);
+  stats.work += pulls_.work(motion.displacement) + wedges_.work(motion.displacement);
   const auto on_pulls = pulls_.reaction(motion.displacement, scene_.pulls.size());
   for (std::size_t p = 0; p < on_pulls.size(); ++p) stats.pull_force[p] += share * on_pulls[p];
 }

@@ -37,7 +37,7 @@ class NodeLoads {
   void end_step(const TimeStep& step, double share, State& motion, FrameStats& stats);
 
  private:
-  void add_wedges(double time, const Solid& solid, const State& motion);
+  void add_wedges(const TimeStep& step, const Solid& solid, const State& motion);
 
   const Scene& scene_;
   const Body& body_;

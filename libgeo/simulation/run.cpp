@@ -51,6 +51,7 @@ FrameStats& FrameStats::operator+=(const FrameStats& o) {
   kinetic = o.kinetic;
   weight = o.weight;
   work += o.work;
+  cut_energy += o.cut_energy;
   support_force = o.support_force;
   blade_force = o.blade_force;
   pull_force = o.pull_force;

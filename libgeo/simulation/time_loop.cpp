@@ -55,6 +55,7 @@ TimeLoop::TimeLoop(RunData& run)
       cuts_(run.scene, run.body, run.state, writer_),
       bonds_(run.body, run.state, writer_),
       skin_(run.scene, run.body),
+      edges_(run.scene),
       sleep_(run.scene, run.state) {
   hold_material(run.state.time);
   apply_changes(run.state.time);
@@ -200,6 +201,15 @@ void TimeLoop::add_obstacles(const TimeStep& step, double stopping) {
     if (sleep_.on()) sleep_.wake(nodes, *potential, loads_.environment());
 }
 
+// Adds the pressure of edges on their fronts, which wakes what they touch.
+void TimeLoop::add_edges(const TimeStep& step) {
+  const Solid& nodes = run_.solid.nodes();
+  edges_.begin_step(step, run_.body, nodes, run_.state, collisions_.weights());
+  if (edges_.empty()) return;
+  loads_.environment().contact.push_back(&edges_);
+  if (sleep_.on()) sleep_.wake(nodes, edges_, loads_.environment());
+}
+
 // Adds obstacles and self-contact to the loads. The result owns the potential of self-contact.
 // Contact needs the nodes of the solid, not its points, which are brought up to date beside it.
 std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameStats& stats) {
@@ -212,7 +222,10 @@ std::optional<ContactStep> TimeLoop::begin_contact(const TimeStep& step, FrameSt
   const double whole = 1 / run_.scene.frame_rate / run_.scene.steps_per_frame();
   const auto begin = [&] {
     const Timed timed(stats.contact_seconds);
-    if (obstacles_.any() || bonds_.any() || skin_.any()) collisions_.update_weights(run_.body, nodes, motion);
+    const bool resists = edges_.any_at(step.begin);
+    if (obstacles_.any() || bonds_.any() || skin_.any() || resists)
+      collisions_.update_weights(run_.body, nodes, motion);
+    if (resists) add_edges(step);
     if (skin_.any()) skin_.begin_step(step, run_.body, nodes, collisions_.weights());
     if (!skin_.empty()) loads_.environment().contact.push_back(&skin_);
     cohesion_.begin_step(run_.body, run_.state.glued, collisions_.weights());
@@ -255,6 +268,7 @@ void TimeLoop::take(const StepReport& report, const TimeStep& step, FrameStats& 
   last_step_.steps = 1;
   add_obstacle_forces(share, stats);
   if (skin_.any()) skin_.end_step(motion.displacement, share, stats);
+  if (edges_.any_at(step.begin)) edges_.end_step(motion.displacement, share, stats);
   if (sleep_.on()) sleep_.end_step(run_.solid.nodes(), step.dt);
   ++stats.steps;
   stats.energy = report.energy;

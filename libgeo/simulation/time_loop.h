@@ -12,6 +12,7 @@
 #include "simulation/cohesive_walls.h"
 #include "simulation/collisions.h"
 #include "simulation/crack_writer.h"
+#include "simulation/edge_resistance.h"
 #include "simulation/node_loads.h"
 #include "simulation/obstacles.h"
 #include "simulation/run_data.h"
@@ -48,6 +49,7 @@ class TimeLoop {
   void sleep_on(const TimeStep& step, FrameStats& stats);
   void add_obstacle_forces(double share, FrameStats& stats) const;
   void add_obstacles(const TimeStep& step, double stopping);
+  void add_edges(const TimeStep& step);
   std::optional<ContactStep> begin_contact(const TimeStep& step, FrameStats& stats);
   StepReport move_nodes(const TimeStep& step, FrameStats& stats);
   void take(const StepReport& report, const TimeStep& step, FrameStats& stats);
@@ -71,6 +73,7 @@ class TimeLoop {
   BondBreaker bonds_;
   CohesiveWalls cohesion_;
   SkinLoads skin_;
+  EdgeResistance edges_;
   Sleep sleep_;
   FrameStats last_step_;  // forces and energy of the last computed step; no steps: none was
 };

@@ -82,6 +82,8 @@ void bind_blade_and_obstacle(py::module_& module) {
       .def_property_readonly(
           "back", [](const Blade& b) { return point(b.back); }, "Vector from the edge to the back of the blade, (3,).")
       .def_readonly("thickness", &Blade::thickness, "Of the wedge at the back; 0: no wedge.")
+      .def_readonly("friction", &Blade::friction, "Of the wedge's flanks: Coulomb's coefficient.")
+      .def_readonly("resistance", &Blade::resistance, "Energy for each area that the edge cuts, J/m2; 0: none.")
       .def_readonly("stiffness", &Blade::stiffness, "Of the wedge: acceleration per depth, 1/s2.")
       .def_readonly("limit", &Blade::limit, "Longest motion of an edge point in one cut, in node spacings.")
       .def(

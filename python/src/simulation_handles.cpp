@@ -122,8 +122,9 @@ void end(const Handle<Kind::grip>& handle) {
 
 // A force that is zero by definition is no measurement.
 void warn_of_sharp(const geo::Blade& blade) {
-  if (blade.thickness > 0 && !blade.back.isZero()) return;
-  const std::string text = "blade '" + blade.name + "' has no force: without back and thickness it is ideally sharp";
+  if ((blade.thickness > 0 && !blade.back.isZero()) || blade.resistance > 0) return;
+  const std::string text =
+      "blade '" + blade.name + "' has no force: without a resistance, or back and thickness, it is ideally sharp";
   if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 

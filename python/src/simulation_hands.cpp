@@ -32,6 +32,8 @@ Handle<Kind::blade> add_blade(Simulation& self, py::object points, py::object po
   keywords.flag("closed", blade.closed);
   keywords.take("thickness", blade.thickness, 0, 1e9);
   keywords.take("stiffness", blade.stiffness, 0, 1e12);
+  keywords.take("friction", blade.friction, 0, 10);
+  keywords.take("resistance", blade.resistance, 0, 1e12);
   keywords.take("limit", blade.limit, 1e-3, 1e9);
   if (const auto back = keywords.object("back"); !back.is_none()) blade.back = point_from(back, "back");
   if (const auto name = keywords.object("name"); !name.is_none()) blade.name = py::str(name).cast<std::string>();
@@ -151,7 +153,7 @@ constexpr const char* add_blade_doc =
     "Adds a blade at a pose, which BladeHandle.extend() moves. points: its edge, (n, 3), in the blade's coordinates. "
     "pose:\n"
     "a position; a pair of position and quaternion (w, x, y, z); or a rigid 4 x 4 matrix. Keywords as in a scene:\n"
-    "closed, back, thickness, stiffness, limit, name. Raises InputError.";
+    "closed, back, thickness, stiffness, friction, resistance, limit, name. Raises InputError.";
 constexpr const char* add_pull_doc =
     "Adds a spring between a point of the material and a world position, which PullHandle.extend() moves. point: in\n"
     "material coordinates. stiffness: N/m. node: one that sees the point; None: the nearest. Raises InputError.";

@@ -276,12 +276,13 @@ void bind_frame_stats(py::module_& module) {
       .def_readonly("contact_seconds", &S::contact_seconds, "Contact.")
       .def_property_readonly("split_seconds", &S::split_seconds, "All phases of cutting.")
       .def_readonly("energy", &S::energy, "Elastic energy at the frame's end, J.")
-      .def_readonly("work", &S::work, "Work of loads, supports and pulls on the bodies, J.")
+      .def_readonly("work", &S::work, "Work of loads, supports, pulls and blades on the bodies, J.")
+      .def_readonly("cut_energy", &S::cut_energy, "Energy that the resistance to blades has taken, J.")
       .def_property_readonly("support_force", forces(&S::support_force),
                              "Mean force of the material on each support along its axes, (s, 3), N.")
       .def_property_readonly("blade_force", forces(&S::blade_force),
-                             "Mean force of the material on the wedge of each blade, (b, 3), N; zero without back and\n"
-                             "thickness.")
+                             "Mean force of the material on each blade, (b, 3), N; zero without a resistance, or back\n"
+                             "and thickness.")
       .def_property_readonly("pull_force", forces(&S::pull_force),
                              "Mean force of the material on each pull, (p, 3), N.")
       .def_property_readonly("obstacle_force", forces(&S::obstacle_force),

@@ -34,6 +34,9 @@ void require_size(const DeformingSolid& self, const State& state) {
   if (!s.plastic.empty() && s.plastic.size() != self.solid.point_count())
     throw geo::InputError("state: has " + std::to_string(s.plastic.size()) + " plastic strains, the solid " +
                           std::to_string(self.solid.point_count()) + " points");
+  if (!s.prestretch.empty() && s.prestretch.size() != self.solid.point_count())
+    throw geo::InputError("state: has prestretch of " + std::to_string(s.prestretch.size()) + " points, the solid " +
+                          std::to_string(self.solid.point_count()) + " points");
 }
 
 // The body after exactly one step behind the solid.
@@ -207,6 +210,13 @@ void bind_solid(py::module_& module) {
             return self.solid.point_count();
           },
           "Number of material points.")
+      .def_property_readonly(
+          "point_positions",
+          [](DeformingSolid& self) {
+            const Reading reading(self.busy);
+            return moved_points(self.solid.point_positions());
+          },
+          "Material coordinates of the material points, (points, 3) float64.")
       .def_property_readonly(
           "moment_quality_counts", &quality,
           "Numbers of nodes and points by the quality of their moment matrix (well-conditioned, ill-conditioned,\n"

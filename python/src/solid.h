@@ -19,11 +19,11 @@ class State {
   /// Takes the motion over.
   explicit State(geo::State s) : state(std::move(s)) {}
   /// Drops the arrays; to be called by every change.
-  void changed() { displacement = velocity = acceleration = plastic = py::object(); }
+  void changed() { displacement = velocity = acceleration = plastic = prestretch = py::object(); }
 
   geo::State state;
   Busy busy;
-  py::object displacement, velocity, acceleration, plastic;  ///< null until made
+  py::object displacement, velocity, acceleration, plastic, prestretch;  ///< null until made
 };
 
 /// A discretised solid, with what is needed to tell which steps of its body it has followed.

@@ -22,6 +22,16 @@ Vectors displacements(const DeformingSolid& self, py::handle object) {
   return state.state.displacement;
 }
 
+// A State, or one of displacements alone.
+geo::State state_of(const DeformingSolid& self, py::handle object) {
+  require_points(self);
+  if (!py::isinstance<State>(object)) return {.displacement = vectors_from(object, "u", self.solid.size())};
+  auto& state = object.cast<State&>();
+  const Reading reading(state.busy);
+  require_fit(self, state);
+  return state.state;
+}
+
 py::tuple stencil(DeformingSolid& self, std::int64_t node) {
   const Reading reading(self.busy);
   if (node < 0 || static_cast<std::size_t>(node) >= self.solid.size())
@@ -124,18 +134,23 @@ void add_fields(Solids& solid) {
           "energy",
           [](DeformingSolid& self, py::object u) {
             const Reading reading(self.busy);
-            const auto values = displacements(self, u);
-            return without_gil([&] { return self.solid.energy(values); });
+            const geo::State state = state_of(self, u);
+            return without_gil([&] { return self.solid.energy(state); });
           },
-          py::arg("u"), "Elastic energy at displacements u, (n, 3) or a State; J. Raises InputError.")
+          py::arg("u"),
+          "Elastic energy at displacements u, (n, 3), or of a State with its plastic strain and prestretch; J. Raises\n"
+          "InputError.")
       .def(
           "forces",
           [](DeformingSolid& self, py::object u) {
             const Reading reading(self.busy);
-            const auto values = displacements(self, u);
-            return moved_points(without_gil([&] { return self.solid.forces(values); }));
+            const geo::State state = state_of(self, u);
+            return moved_points(without_gil([&] { return self.solid.forces(state); }));
           },
-          py::arg("u"), "Elastic forces at displacements u, (n, 3) or a State; (n, 3), N. They sum to zero.")
+          py::arg("u"),
+          "Elastic forces at displacements u, (n, 3), or of a State with its plastic strain and prestretch; (n, 3), "
+          "N.\n"
+          "They sum to zero.")
       .def(
           "stiffness_product",
           [](DeformingSolid& self, py::object u, py::object p) {

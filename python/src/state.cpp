@@ -13,13 +13,15 @@ namespace {
 
 using Vectors = std::vector<geo::Vec3>;
 
-std::shared_ptr<State> made(py::object displacement, py::object velocity, py::object acceleration, py::object plastic) {
+std::shared_ptr<State> made(py::object displacement, py::object velocity, py::object acceleration, py::object plastic,
+                            py::object prestretch) {
   geo::State state;
   state.displacement = points_from(displacement, "displacement");
   const auto n = state.displacement.size();
   state.velocity = velocity.is_none() ? Vectors(n, geo::Vec3::Zero()) : vectors_from(velocity, "velocity", n);
   if (!acceleration.is_none()) state.acceleration = vectors_from(acceleration, "acceleration", n);
   if (!plastic.is_none()) state.plastic = matrices_from(plastic, "plastic");
+  if (!prestretch.is_none()) state.prestretch = matrices_from(prestretch, "prestretch");
   return std::make_shared<State>(std::move(state));
 }
 
@@ -86,10 +88,12 @@ void bind_state(py::module_& module) {
   py::class_<State, std::shared_ptr<State>> state(
       module, "State",
       "The motion of a solid at one instant. Arrays are snapshots; assign whole arrays to change it.\n\n"
-      "State(displacement, velocity=None, acceleration=None, plastic=None): (n, 3) model units and model units per\n"
-      "second, per node; (points, 3, 3) plastic Green strain per material point. Raises InputError.");
+      "State(displacement, velocity=None, acceleration=None, plastic=None, prestretch=None): (n, 3) model units and "
+      "model units per\n"
+      "second, per node; (points, 3, 3) plastic Green strain and prestretch per material point. Raises InputError.");
   state.def(py::init(&made), py::arg("displacement"), py::arg("velocity") = py::none(),
-            py::arg("acceleration") = py::none(), py::arg("plastic") = py::none(), "See the class.");
+            py::arg("acceleration") = py::none(), py::arg("plastic") = py::none(), py::arg("prestretch") = py::none(),
+            "See the class.");
   vectors(state, "displacement", &geo::State::displacement, &State::displacement, "(n, 3) float64, model units.");
   vectors(state, "velocity", &geo::State::velocity, &State::velocity, "(n, 3) float64, model units per second.");
   vectors(state, "acceleration", &geo::State::acceleration, &State::acceleration,
@@ -104,6 +108,16 @@ void bind_state(py::module_& module) {
             return self.plastic;
           },
           "(points, 3, 3) float64: plastic part of the Green strain per material point; None: none yet.")
+      .def_property_readonly(
+          "prestretch",
+          [](State& self) -> py::object {
+            const Reading reading(self.busy);
+            if (self.state.prestretch.empty()) return py::none();
+            if (!self.prestretch) self.prestretch = moved_matrices(self.state.prestretch);
+            return self.prestretch;
+          },
+          "(points, 3, 3) float64: symmetric stretch of the material at rest from its state without stress, per\n"
+          "material point; None: none.")
       .def(
           "copy",
           [](State& self) {

@@ -73,7 +73,8 @@ std::string line_of(const FrameOutcome& o, std::size_t crossings) {
                      ",\"broken_area\":" + tool::number(o.stats.fracture.broken_area) +
                      ",\"surface_energy\":" + tool::number(o.stats.fracture.spent) +
                      ",\"energy\":" + tool::number(o.stats.energy) + ",\"kinetic\":" + tool::number(o.stats.kinetic) +
-                     ",\"weight\":" + tool::number(o.stats.weight) + ",\"blade_force\":[";
+                     ",\"weight\":" + tool::number(o.stats.weight) +
+                     ",\"cut_energy\":" + tool::number(o.stats.cut_energy) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < o.stats.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.stats.blade_force[b]);
   line += "],\"obstacles\":[";
   for (std::size_t k = 0; k < o.stats.obstacle_force.size(); ++k)

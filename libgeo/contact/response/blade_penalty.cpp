@@ -6,10 +6,14 @@
 #include <cmath>
 
 #include "geometry/distance.h"
-#include "mechanics/terms/contact_law.h"
 
 namespace geo {
 namespace {
+
+// Slip below this share of the blade's way is regularised, so that what goes with it sticks.
+constexpr double relative_slip = 1e-2;
+// The least slip regularisation, in support radii: for blades that rest.
+constexpr double least_slip = 1e-6;
 
 // The middle plane of a wedge behind one segment of its edge.
 struct Flank {
@@ -87,26 +91,59 @@ void BladePenalty::add(std::size_t blade, const BladeWedge& wedge, const BladeNo
       found.normal = ((d < 0 ? -1.0 : 1.0) * f.normal - slope * back / width).normalized();
       found.offset = surface - found.normal.dot(r - nodes.displacement[i]);
     }
-    if (found.normal != Vec3::Zero()) contacts_.push_back(found);
+    if (found.normal == Vec3::Zero()) continue;
+    found.coefficient = wedge.friction;
+    found.way = wedge.way(world);
+    found.regularisation = std::max(relative_slip * found.way.norm(), least_slip * nodes.radius[i]);
+    contacts_.push_back(found);
   }
 }
 
+void BladePenalty::begin_substep(const std::vector<Vec3>& u, double from, double to) {
+  for (Contact& c : contacts_) {
+    const Vec3& start = u[c.node.node];
+    const double normal = c.stiffness * c.depth(start);
+    c.stuck = start + (to - from) * c.way;
+    c.memory.begin_substep(normal, normal > 0 ? NormalForce::balanced : NormalForce::estimated);
+  }
+}
+
+double BladePenalty::begin_iterate(std::size_t k, const Vec3& d) {
+  Contact& c = contacts_[k];
+  const Vec3 along = c.slip(d);
+  const double change = c.memory.begin_iterate(along, c.stiffness * c.depth(d));
+  return c.coefficient * change * c.friction().energy_over_bound(along.norm());
+}
+
 double BladePenalty::energy(std::size_t k, const Vec3& d) const {
-  const double depth = contacts_[k].depth(d);
-  return penalty_energy(contacts_[k].stiffness, depth * depth);
+  const Contact& c = contacts_[k];
+  const double depth = c.depth(d), penalty = penalty_energy(c.stiffness, depth * depth);
+  const LaggedFriction f = c.friction();
+  return f.acts() ? penalty + f.energy(c.slip(d).norm()) : penalty;
 }
 
 Potential::Derivatives BladePenalty::derivatives(std::size_t k, const Vec3& d) const {
   const Contact& c = contacts_[k];
   const double depth = c.depth(d);
-  return {penalty_force(c.stiffness, depth, c.normal),
-          depth > 0 ? plane_penalty_hessian(c.stiffness, c.normal) : Mat3(Mat3::Zero())};
+  Derivatives result{penalty_force(c.stiffness, depth, c.normal),
+                     depth > 0 ? plane_penalty_hessian(c.stiffness, c.normal) : Mat3(Mat3::Zero())};
+  if (const LaggedFriction f = c.friction(); f.acts())
+    f.add(c.slip(d), c.normal * c.normal.transpose(), c.memory.last_slip, result.force, result.hessian);
+  return result;
 }
 
 std::vector<Vec3> BladePenalty::reaction(const std::vector<Vec3>& u, std::size_t blades) const {
   std::vector<Vec3> sum(blades, Vec3::Zero());
-  for (const Contact& c : contacts_) sum[c.blade] -= penalty_force(c.stiffness, c.depth(u[c.node.node]), c.normal);
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    sum[contacts_[k].blade] -= derivatives(k, u[contacts_[k].node.node]).force;
   return sum;
+}
+
+double BladePenalty::work(const std::vector<Vec3>& u) const {
+  double work = 0;
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    work += derivatives(k, u[contacts_[k].node.node]).force.dot(contacts_[k].way);
+  return work;
 }
 
 }  // namespace geo

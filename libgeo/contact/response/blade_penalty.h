@@ -10,6 +10,7 @@
 #include "kerf/body.h"
 #include "kerf/potential.h"
 #include "kerf/vec.h"
+#include "mechanics/terms/contact_law.h"
 
 namespace geo {
 
@@ -21,6 +22,9 @@ struct BladeWedge {
   Vec3 back = Vec3::Zero();  ///< from the edge to the back of the blade, world
   double thickness = 0;      ///< at the back, model units
   double stiffness = 0;      ///< acceleration over depth, 1/s²
+  double friction = 0;       ///< Coulomb's coefficient
+  /// The way of a point of the blade in the whole step, given where it is at its begin, world.
+  std::function<Vec3(const Vec3&)> way = [](const Vec3&) { return Vec3(Vec3::Zero()); };
 };
 
 /// Nodes of a body. Refers to everything.
@@ -35,9 +39,9 @@ struct BladeNodes {
 /// surface within its support radius. The cost does not depend on the size of the body.
 double surface_distance(const Body& body, NodeId node);
 
-/// The penalty of contact_law.h, without friction, for every node that is beside a flank when the
+/// The penalty and the friction of contact_law.h for every node that is beside a flank when the
 /// step begins. The plane of a contact is the wedge's face on the node's side, for the whole step.
-/// Its depth is that of the surface nearest to the node.
+/// Its depth is that of the surface nearest to the node. Slip is relative to the moving blade.
 class BladePenalty : public Potential {
  public:
   /// Adds the contacts of a blade. `blade`: its number, for reaction().
@@ -49,22 +53,34 @@ class BladePenalty : public Potential {
   std::size_t size() const override { return contacts_.size(); }
   /// The node.
   Stencil stencil(std::size_t k) const override { return {&contacts_[k].node, 1}; }
-  /// Energy of the penalty, J.
+  /// Takes bounds of friction at the substep's begin.
+  void begin_substep(const std::vector<Vec3>& u, double from, double to) override;
+  /// Takes the bound of friction.
+  double begin_iterate(std::size_t k, const Vec3& d) override;
+  /// Energy of penalty and friction, J.
   double energy(std::size_t k, const Vec3& d) const override;
-  /// Derivatives of the penalty.
+  /// Derivatives of penalty and friction.
   Derivatives derivatives(std::size_t k, const Vec3& d) const override;
-  /// Force of the material on each of `blades` blades at displacements u, N.
+  /// Force of the material on each of `blades` blades at displacements u, N, with friction.
   std::vector<Vec3> reaction(const std::vector<Vec3>& u, std::size_t blades) const;
+  /// Work of the moving blades on the material in the step, by the forces at displacements u, J.
+  double work(const std::vector<Vec3>& u) const;
 
  private:
   struct Contact {
     NodeWeight node;  // with weight 1
     std::size_t blade;
-    Vec3 normal;       // out of the blade
-    double stiffness;  // N/m
-    double offset;     // depth = offset − normal · u
+    Vec3 normal;                                 // out of the blade
+    double stiffness;                            // N/m
+    double offset;                               // depth = offset − normal · u
+    double coefficient = 0, regularisation = 0;  // of friction; of its slip, model units
+    Vec3 way = Vec3::Zero();                     // of the blade at the node, in the step
+    Vec3 stuck = Vec3::Zero();                   // displacement of a node that sticks, at the substep's end
+    FrictionMemory memory = {};
     /// Depth of the node's surface beyond the plane, at displacement u of the node; 0 outside.
     double depth(const Vec3& u) const { return std::max(0.0, offset - normal.dot(u)); }
+    LaggedFriction friction() const { return {coefficient * memory.normal_force, regularisation}; }
+    Vec3 slip(const Vec3& u) const { return (u - stuck) - normal.dot(u - stuck) * normal; }
   };
   std::vector<Contact> contacts_;
 };

@@ -98,18 +98,28 @@ struct FractureOptions : Breakage {
   }
 };
 
+/// How far the material of a body at rest is stretched from its state without stress, as tissue in
+/// a living body is. What is cut then opens.
+struct Prestretch {
+  Vec3 stretch = Vec3::Ones();  ///< along the axes of the material coordinates, 1: none
+  double skin = 1;              ///< further, in the plane of the skin, as far as `depth` below it
+  double depth = 0;             ///< of that layer, model units
+  friend bool operator==(const Prestretch&, const Prestretch&) = default;
+};
+
 /// One solid of a scene. All solids become disconnected components of one Body, whose material
 /// coordinates are those of the placed models.
 struct SceneBody {
   std::string name;
   std::string mesh;  ///< path of the model; from the scene file's folder unless absolute
   SampleOptions sampling;
-  double spacing_percent = 5;        ///< of the model's diagonal, where sampling.spacing and count are 0
-  double scale = 1;                  ///< of the model, applied before the pose
-  Pose place;                        ///< of the scaled model in the world
-  Vec3 velocity = Vec3::Zero();      ///< initial, model units per second
-  Vec3 spin = Vec3::Zero();          ///< initial angular velocity about the centre of its nodes' box, rad/s
-  std::optional<Material> material;  ///< its own; none: the scene's
+  double spacing_percent = 5;                 ///< of the model's diagonal, where sampling.spacing and count are 0
+  double scale = 1;                           ///< of the model, applied before the pose
+  Pose place;                                 ///< of the scaled model in the world
+  Vec3 velocity = Vec3::Zero();               ///< initial, model units per second
+  Vec3 spin = Vec3::Zero();                   ///< initial angular velocity about the centre of its nodes' box, rad/s
+  std::optional<Material> material;           ///< its own; none: the scene's
+  std::optional<Prestretch> prestretch = {};  ///< its own; none: the scene's
 };
 
 /// A box whose nodes are held, and moved rigidly.
@@ -192,7 +202,12 @@ struct Blade {
   Vec3 back = Vec3::Zero();  ///< vector from the edge to the back of the blade, in its coordinates
   double thickness = 0;      ///< of the wedge at the back, model units; 0: no wedge
   double stiffness = 1e4;    ///< of the wedge: acceleration per depth, 1/s²
-  double limit = 1;          ///< largest motion of an edge point in one cut, in node spacings (§ 5.1)
+  double friction = 0;       ///< of the wedge's flanks: Coulomb's coefficient
+  /// Energy for each undeformed area that the edge cuts, J / model unit². The material is pushed
+  /// along until the edge presses with as much on its length. Sharp blades have a small one, dull
+  /// ones a large one. 0: the edge parts the material without a force.
+  double resistance = 0;
+  double limit = 1;  ///< largest motion of an edge point in one cut, in node spacings (§ 5.1)
 
   /// True while the blade exists.
   bool active(double time) const { return motion.active(time); }
@@ -236,6 +251,10 @@ struct Scene {
   std::vector<SceneBody> bodies;  ///< at least one
   int k = 26;                     ///< neighbours of a node (§ 6.2)
   Material material;              ///< of bodies without one of their own
+  Prestretch prestretch;          ///< likewise
+  /// The models have the shape of the bodies under their load at time 0, and rest in it. Prestretch
+  /// is changed so that they do.
+  bool loaded = false;
   std::vector<SceneScore> scores;
   std::vector<SceneScoreFile> score_files;  ///< that `scores` were read from
   std::vector<Grip> grips;

@@ -100,7 +100,8 @@ struct FrameStats {
   double kinetic = 0;                 ///< kinetic energy, J, at the frame's end
   double weight = 0;                  ///< energy of weight, J, at the frame's end; 0 where nothing has moved
   std::vector<Vec3> blade_force;      ///< per blade: exerted by the material, N, mean over the frame
-  double work = 0;                    ///< of loads, supports and pulls on the bodies, J
+  double work = 0;                    ///< of loads, supports, pulls and blades on the bodies, J
+  double cut_energy = 0;              ///< that the resistance to blades has taken, J
   std::vector<Vec3> support_force;    ///< per support: exerted by the material along its axes, N, mean over the frame
   std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
   std::vector<Vec3> obstacle_force;   ///< per obstacle, then the ground: exerted by the bodies, N, mean
@@ -166,8 +167,9 @@ struct RunStart {
   RunState state;
 };
 
-/// Samples the models, builds the body, and inserts the scene's prescored cracks. Throws InputError
-/// where the models do not fit the scene, GeometryError where a prescored crack cannot be inserted.
+/// Samples the models, builds the body, inserts the scene's prescored cracks and finds its
+/// prestretch. Throws InputError where the models do not fit the scene, GeometryError where a
+/// prescored crack cannot be inserted, or loaded bodies do not come to rest.
 RunStart begin_run(const Scene& scene, const PlacedModels& models, const Progress& progress = {});
 
 /// A run: a scene, its body, and the state of motion, fronts and contact. The result is the same

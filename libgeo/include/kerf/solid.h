@@ -32,6 +32,9 @@ struct State {
   std::vector<Mat3> plastic = {};       ///< per material point: plastic part of the Green strain; empty: none yet
   std::vector<Mat3> rotation = {};      ///< per node: rotation of debris, whose neighbours do not determine it; the
                                         ///< identity for other nodes; empty: no debris yet
+  /// Per material point: the symmetric, positive stretch of the material at rest, from its state
+  /// without stress (V of F = V R). Empty: none.
+  std::vector<Mat3> prestretch = {};
 };
 
 /// External actions on the nodes: gravity, loads, clamps, contact.
@@ -83,7 +86,8 @@ class Solid {
   /// Updates the discretisation and `state` after a split; the result equals a build from scratch,
   /// bit for bit. New nodes take the motion of old nodes around them and their donors' material.
   /// Each component of the graph then gets the rigid motion that restores its linear momentum and
-  /// its angular momentum about its centre of mass. Plastic strain stays with its point.
+  /// its angular momentum about its centre of mass. Plastic
+  /// strain and prestretch stay with their point; new points have the mean of those about them.
   void update(const Body& body, const BodyDelta& delta, State& state);
   /// First half of update(), after each split: nodes, their motion and their gradients.
   void update_nodes(const Body& body, const BodyDelta& delta, State& state);
@@ -113,6 +117,8 @@ class Solid {
   const Materials& materials() const;
   /// Number of material points.
   std::size_t point_count() const;
+  /// The material coordinates of the material points, in their order.
+  std::vector<Vec3> point_positions() const;
   /// Counts nodes and material points by the quality of their moment matrix.
   MomentQualityCounts moment_quality_counts() const;
 
@@ -123,10 +129,14 @@ class Solid {
   /// Appends j and g_j (1/m) for every node j with ∇u_i = Σ u_j g_jᵀ, node i itself included; the
   /// g_j sum to zero. Without the rotation of debris.
   void gradient_stencil(NodeId i, std::vector<std::pair<NodeId, Vec3>>& out) const;
-  /// Elastic energy at displacements u, J.
+  /// Elastic energy at displacements u, J, without plastic strain and prestretch.
   double energy(const std::vector<Vec3>& u) const;
+  /// Elastic energy of a state, J.
+  double energy(const State& state) const;
   /// Elastic forces −∂U/∂u at displacements u, N per node; they sum to zero.
   std::vector<Vec3> forces(const std::vector<Vec3>& u) const;
+  /// The same of a state.
+  std::vector<Vec3> forces(const State& state) const;
   /// ∂²U/∂u² p with the implicit step's stiffness at u: in single precision, negative eigenvalues
   /// left out. N per node.
   std::vector<Vec3> stiffness_product(const std::vector<Vec3>& u, const std::vector<Vec3>& p) const;

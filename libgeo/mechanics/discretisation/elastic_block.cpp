@@ -16,8 +16,9 @@ ElasticBlock::ElasticBlock(Scratch& scratch, const BlockStrain& strain, const Ma
 void ElasticBlock::evaluate_range(const PointBlock& block, const MaterialRange& range, const PointHistory& history,
                                   PointMatrices<float>* elastic_gradient) {
   const ElasticConstants& constants = constants_[range.material];
-  const PointHistory used{constants.yields ? history.inverse_plastic_stretch : nullptr,
-                          constants.viscosity > 0 ? history.previous_gradient : nullptr};
+  const bool relaxes = constants.yields || history.share != nullptr;
+  const PointHistory used{.relaxation = relaxes ? history.relaxation : nullptr,
+                          .previous_gradient = constants.viscosity > 0 ? history.previous_gradient : nullptr};
   const PointRange points{range.begin, range.end};
   if (range.uniform)
     return elastic_response(constants, points, scratch_.volume, used, scratch_.gradient, scratch_.energy,
@@ -49,7 +50,8 @@ const std::vector<double>& ElasticBlock::evaluate(std::size_t block, const std::
   strain_.gradients(block, u, scratch_.strain, scratch_.gradient);
   scratch_.volume.assign((b.points.size() + 7) / 8 * 8, 0);
   for (std::size_t i = 0; i < b.points.size(); ++i)
-    if (b.points[i].quality != MomentQuality::singular) scratch_.volume[i] = b.points[i].volume;
+    if (b.points[i].quality != MomentQuality::singular)
+      scratch_.volume[i] = history.share ? (*history.share)[i] * b.points[i].volume : b.points[i].volume;
   if (elastic_gradient) elastic_gradient->resize(b.points.size());
   scratch_.energy.resize(scratch_.volume.size());
   for (const MaterialRange& range : b.material_ranges) evaluate_range(b, range, history, elastic_gradient);

@@ -23,7 +23,8 @@ class ElasticBlock {
   /// Keeps references to `scratch` and `strain`. `dt`: the time step, s, for viscosity.
   ElasticBlock(Scratch& scratch, const BlockStrain& strain, const Materials& materials, double dt = 1);
   /// Evaluates a block at nodal displacements u. A point's material decides which parts of the
-  /// history it uses. `elastic_gradient`, unless null: the elastic deformation gradient of its
+  /// history it uses; with prestretch, all points relax. `elastic_gradient`, unless null: the
+  /// elastic deformation gradient of its
   /// points, less the identity. `force`, unless null: Σ stress · shape gradient, four numbers per
   /// node of the block. Returns each point's energy, J; padding is zero.
   const std::vector<double>& evaluate(std::size_t block, const std::vector<Vec3>& u, const PointHistory& history,

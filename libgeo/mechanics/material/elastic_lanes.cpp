@@ -19,8 +19,8 @@ namespace {
 // The arrays of elastic_response() as pointers; matrices by columns.
 struct ElasticArrays {
   const double* volume;
-  const double* const* inverse_stretch;  // or null
-  const double* const* previous;         // or null
+  const double* const* relaxation;  // or null
+  const double* const* previous;    // or null
   double* const* gradient;
   double* energy;
   float* const* elastic_gradient;  // or null
@@ -156,26 +156,26 @@ HWY_INLINE Vector viscous(const ElasticConstants& m, const Matrix<double>& g, co
   return hn::Mul(number(0.5 * m.dt * m.viscosity), square_norm(rate));
 }
 
-// F times the inverse plastic stretch (unless null), less the identity.
-HWY_INLINE Matrix<double> elastic_part(const double* const* inverse_stretch, std::size_t i, const Matrix<double>& g) {
-  if (!inverse_stretch) return g;
-  Matrix<double> h = product(with_identity(g), load(inverse_stretch, i));
+// F times the relaxation (unless null), less the identity.
+HWY_INLINE Matrix<double> elastic_part(const double* const* relaxation, std::size_t i, const Matrix<double>& g) {
+  if (!relaxation) return g;
+  Matrix<double> h = product(with_identity(g), load(relaxation, i));
   for (int k = 0; k < 3; ++k) h.at[k][k] = hn::Sub(h.at[k][k], number(1));
   return h;
 }
 
 void Elastic(const ElasticConstants& m, PointRange range, const ElasticArrays& arrays) {
-  const auto [volume, inverse_stretch, previous, gradient, energy, elastic_gradient] = arrays;
+  const auto [volume, relaxation, previous, gradient, energy, elastic_gradient] = arrays;
   const hn::Rebind<float, Tag> d32;
   for (std::size_t i = range.begin; i < range.end; i += width<double>) {
-    const Matrix<double> g = load<double>(gradient, i), h = elastic_part(inverse_stretch, i, g);
+    const Matrix<double> g = load<double>(gradient, i), h = elastic_part(relaxation, i, g);
     Matrix<double> stress;
     if (elastic_gradient)
       for (std::size_t c = 0; c < 3; ++c)
         hn::StoreInterleaved4(hn::DemoteTo(d32, h.at[c][0]), hn::DemoteTo(d32, h.at[c][1]),
                               hn::DemoteTo(d32, h.at[c][2]), hn::Zero(d32), d32, elastic_gradient[c] + 4 * i);
     auto density = elastic(m, h, stress);
-    if (inverse_stretch) stress = product(stress, load(inverse_stretch, i));
+    if (relaxation) stress = product(stress, load(relaxation, i));
     if (previous) density = hn::Add(density, viscous(m, g, load(previous, i), stress));
     const auto v = hn::LoadU(Tag(), volume + i);
     const auto has_volume = hn::Gt(v, hn::Zero(Tag()));
@@ -186,13 +186,13 @@ void Elastic(const ElasticConstants& m, PointRange range, const ElasticArrays& a
   }
 }
 
-void Cauchy(const ElasticConstants& m, PointRange range, const double* const* inverse_stretch,
-            const double* const* gradient, float* HWY_RESTRICT out) {
+void Cauchy(const ElasticConstants& m, PointRange range, const double* const* relaxation, const double* const* gradient,
+            float* HWY_RESTRICT out) {
   const hn::Rebind<float, Tag> d32;
   constexpr std::size_t lanes = width<double>;
   float numbers[2][4 * lanes];
   for (std::size_t i = range.begin; i < range.end; i += lanes) {
-    const Matrix<double> h = elastic_part(inverse_stretch, i, load<double>(gradient, i));
+    const Matrix<double> h = elastic_part(relaxation, i, load<double>(gradient, i));
     Matrix<double> piola;
     elastic(m, h, piola);
     const Matrix<double> f = with_identity(h), stress = product(piola, transposed(f));  // J times Cauchy stress
@@ -253,13 +253,13 @@ ElasticConstants elastic_constants(const Material& m, double dt) {
 void elastic_response(const ElasticConstants& constants, PointRange range, const std::vector<double>& volume,
                       const PointHistory& history, PointMatrices<double>& gradient, std::vector<double>& energy,
                       PointMatrices<float>* elastic_gradient) {
-  const auto inverse_stretch = columns(history.inverse_plastic_stretch), previous = columns(history.previous_gradient);
+  const auto relaxation = columns(history.relaxation), previous = columns(history.previous_gradient);
   double* const stress[3] = {gradient.column[0].data(), gradient.column[1].data(), gradient.column[2].data()};
   float* const elastic[3] = {elastic_gradient ? elastic_gradient->column[0].data() : nullptr,
                              elastic_gradient ? elastic_gradient->column[1].data() : nullptr,
                              elastic_gradient ? elastic_gradient->column[2].data() : nullptr};
   const ElasticArrays arrays{.volume = volume.data(),
-                             .inverse_stretch = history.inverse_plastic_stretch ? inverse_stretch.data() : nullptr,
+                             .relaxation = history.relaxation ? relaxation.data() : nullptr,
                              .previous = history.previous_gradient ? previous.data() : nullptr,
                              .gradient = stress,
                              .energy = energy.data(),
@@ -267,12 +267,11 @@ void elastic_response(const ElasticConstants& constants, PointRange range, const
   HWY_DYNAMIC_DISPATCH(Elastic)(constants, range, arrays);
 }
 
-void cauchy_stresses(const ElasticConstants& constants, PointRange range,
-                     const PointMatrices<double>* inverse_plastic_stretch, const PointMatrices<double>& gradient,
-                     float* stress) {
-  const auto from = columns(&gradient), inverse_stretch = columns(inverse_plastic_stretch);
+void cauchy_stresses(const ElasticConstants& constants, PointRange range, const PointMatrices<double>* relaxation,
+                     const PointMatrices<double>& gradient, float* stress) {
+  const auto from = columns(&gradient), matrix = columns(relaxation);
   HWY_DYNAMIC_DISPATCH(Cauchy)
-  (constants, range, inverse_plastic_stretch ? inverse_stretch.data() : nullptr, from.data(), stress);
+  (constants, range, relaxation ? matrix.data() : nullptr, from.data(), stress);
 }
 
 }  // namespace geo

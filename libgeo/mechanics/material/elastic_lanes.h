@@ -22,8 +22,9 @@ ElasticConstants elastic_constants(const Material& material, double dt = 1);
 
 /// State of points in addition to ∇u. Null: not present.
 struct PointHistory {
-  const PointMatrices<double>* inverse_plastic_stretch = nullptr;  ///< symmetric: elasticity sees F times it
-  const PointMatrices<double>* previous_gradient = nullptr;        ///< ∇u at the start of the step, for viscosity
+  const PointMatrices<double>* relaxation = nullptr;         ///< symmetric: elasticity sees F times it
+  const PointMatrices<double>* previous_gradient = nullptr;  ///< ∇u at the start of the step, for viscosity
+  const std::vector<double>* share = nullptr;                ///< volume without stress over volume, by prestretch
 };
 
 /// Points from `begin` up to `end`, both multiples of eight.
@@ -33,17 +34,16 @@ struct PointRange {
 
 /// In: ∇u. Out, in place: the first Piola–Kirchhoff stress times `volume`; `energy`: the energy
 /// density times `volume`. `volume` and `energy` have one value per point, a multiple of eight of
-/// them. Points with zero volume get zeros. `elastic_gradient`, unless null: F times the inverse
-/// plastic stretch, less the identity.
+/// them. Points with zero volume get zeros. `elastic_gradient`, unless null: F times the
+/// relaxation, less the identity.
 void elastic_response(const ElasticConstants& constants, PointRange range, const std::vector<double>& volume,
                       const PointHistory& history, PointMatrices<double>& gradient, std::vector<double>& energy,
                       PointMatrices<float>* elastic_gradient);
 
-/// Cauchy stress of points with displacement gradient `gradient` and, unless null, an inverse
-/// plastic stretch. Eight numbers per point from stress[8 · point] on: xx, yy, zz, xy, yz, zx in
-/// Pa, then 1, then 0. All are zero where det F ≤ 0.
-void cauchy_stresses(const ElasticConstants& constants, PointRange range,
-                     const PointMatrices<double>* inverse_plastic_stretch, const PointMatrices<double>& gradient,
-                     float* stress);
+/// Cauchy stress of points with displacement gradient `gradient` and, unless null, a relaxation.
+/// Eight numbers per point from stress[8 · point] on: xx, yy, zz, xy, yz, zx in Pa, then 1, then 0. All are zero where
+/// det F ≤ 0.
+void cauchy_stresses(const ElasticConstants& constants, PointRange range, const PointMatrices<double>* relaxation,
+                     const PointMatrices<double>& gradient, float* stress);
 
 }  // namespace geo

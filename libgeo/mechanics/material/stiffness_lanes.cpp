@@ -281,9 +281,9 @@ namespace geo {
 HWY_EXPORT(Modes);
 
 void stiffness_modes(const StiffnessConstants& constants, PointRange range,
-                     const PointMatrices<float>& elastic_gradient, const PointMatrices<float>* inverse_plastic_stretch,
+                     const PointMatrices<float>& elastic_gradient, const PointMatrices<float>* relaxation,
                      const std::vector<float>& weight, StiffnessModes& out) {
-  HWY_DYNAMIC_DISPATCH(Modes)(constants, range, elastic_gradient, inverse_plastic_stretch, weight.data(), out);
+  HWY_DYNAMIC_DISPATCH(Modes)(constants, range, elastic_gradient, relaxation, weight.data(), out);
 }
 
 void StiffnessModes::copy_point(const StiffnessModes& from, std::size_t point) {

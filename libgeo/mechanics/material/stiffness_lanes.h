@@ -41,10 +41,10 @@ struct StiffnessModes {
 
 /// Computes the modes of points in `range`, times `weight` (one per point, a multiple of eight of
 /// them), into `out`, which must be large enough. `elastic_gradient`: the elastic deformation
-/// gradient less the identity. `inverse_plastic_stretch`, unless null: symmetric matrices by which
-/// gradients and stresses are multiplied, too.
+/// gradient less the identity. `relaxation`, unless null: symmetric matrices by which gradients and
+/// stresses are multiplied, too.
 void stiffness_modes(const StiffnessConstants& constants, PointRange range,
-                     const PointMatrices<float>& elastic_gradient, const PointMatrices<float>* inverse_plastic_stretch,
+                     const PointMatrices<float>& elastic_gradient, const PointMatrices<float>* relaxation,
                      const std::vector<float>& weight, StiffnessModes& out);
 
 }  // namespace geo

@@ -44,10 +44,16 @@ ElasticPotential::ElasticPotential(const StepProblem& problem)
       std::vector<float>& weight = stiffness_.weight[b];
       weight.assign((points.size() + 7) / 8 * 8, 0);
       for (std::size_t i = 0; i < points.size(); ++i)
-        weight[i] = points[i].quality == MomentQuality::singular ? 0.0f : float(points[i].volume);
+        weight[i] = points[i].quality == MomentQuality::singular ? 0.0f : float(volume_of(b, i));
       if (viscous) strain_.gradients(b, problem.start.displacement, scratch, start_gradient_[b]);
     }
   });
+}
+
+// The volume of a point without stress.
+double ElasticPotential::volume_of(std::size_t block, std::size_t point) const {
+  const double volume = solid_.points.blocks[block].points[point].volume;
+  return relaxation_.empty() ? volume : relaxation_[block].share_at(point) * volume;
 }
 
 void ElasticPotential::evaluate(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& energy,
@@ -69,8 +75,8 @@ void ElasticPotential::evaluate(const ActiveIslands& active, const std::vector<V
     ElasticBlock elastic(scratch, strain_, solid_.materials, dt_);
     for (std::size_t k = begin; k < end; ++k) {
       const std::size_t b = blocks[k];
-      const PointHistory history{relaxation_.empty() ? nullptr : &relaxation_[b],
-                                 start_gradient_.empty() ? nullptr : &start_gradient_[b]};
+      PointHistory history = relaxation_.empty() ? PointHistory{} : relaxation_[b].history();
+      history.previous_gradient = start_gradient_.empty() ? nullptr : &start_gradient_[b];
       const auto& point_energy =
           elastic.evaluate(b, u, history, response ? &response->deformation[b] : nullptr,
                            response ? block_forces_.data() + 4 * points.scatter_offset(b) : nullptr);
@@ -144,16 +150,18 @@ void ElasticPotential::linearise_block(std::size_t block, const std::vector<Stif
   if (!relaxation_.empty()) {
     relaxation.resize(points.points.size());
     for (int c = 0; c < 3; ++c)
-      std::copy(relaxation_[block].column[c].begin(), relaxation_[block].column[c].end(), relaxation.column[c].begin());
+      std::copy(relaxation_[block].matrix.column[c].begin(), relaxation_[block].matrix.column[c].end(),
+                relaxation.column[c].begin());
   }
   modes.resize(weight.size());
   for (const MaterialRange& run : points.material_ranges) {
-    const bool plastic = !relaxation_.empty() && solid_.materials[run.material].yield > 0;
+    const bool relaxes =
+        !relaxation_.empty() && (solid_.materials[run.material].yield > 0 || !relaxation_[block].share.empty());
     // In a range of mixed materials, all points are computed with the range's material, and results
     // of other materials' points are dropped.
     StiffnessModes& out = run.uniform ? modes : scratch;
     out.resize(weight.size());
-    stiffness_modes(constants[run.material], {run.begin, run.end}, deformation, plastic ? &relaxation : nullptr, weight,
+    stiffness_modes(constants[run.material], {run.begin, run.end}, deformation, relaxes ? &relaxation : nullptr, weight,
                     out);
     for (std::size_t i = run.begin; i < run.end && !run.uniform; ++i)
       if (points.belongs_to(run, i)) modes.copy_point(scratch, i);

@@ -46,6 +46,7 @@ class ElasticPotential {
   const PointStiffness& stiffness() const { return stiffness_; }
 
  private:
+  double volume_of(std::size_t block, std::size_t point) const;
   void add_stars(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& energy,
                  ElasticResponse* response) const;
   void linearise_block(std::size_t block, const std::vector<StiffnessConstants>& constants,
@@ -55,7 +56,7 @@ class ElasticPotential {
   const SolidDiscretisation& solid_;
   double dt_;
   BlockStrain strain_;
-  std::vector<PointMatrices<double>> relaxation_;  // per block: inverse plastic deformation; empty: nothing has flown
+  std::vector<PointRelaxation> relaxation_;            // per block; empty: elasticity sees all of F
   std::vector<PointMatrices<double>> start_gradient_;  // per block: ∇u at the start of the step; empty: no viscosity
   PointStiffness stiffness_;
   std::vector<double> block_energy_;   // per block and island of the block

@@ -18,8 +18,8 @@ struct ExplicitStep {
   const SolidDiscretisation& solid;
   const Environment& environment;
   double dt;
-  std::vector<double> inverse_mass;               // per node; zero where fixed
-  std::vector<PointMatrices<double>> relaxation;  // of plastic strain
+  std::vector<double> inverse_mass;         // per node; zero where fixed
+  std::vector<PointRelaxation> relaxation;  // of plastic strain and prestretch
 };
 
 // Duration of a stable substep. No pressure wave, of speed √((λ + 2 μ + k_v) / ρ), crosses 0.3 of

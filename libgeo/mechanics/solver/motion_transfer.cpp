@@ -109,8 +109,11 @@ std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const No
   for (std::size_t i = old_count; i < n; ++i) {
     state.displacement.push_back(motion[i - old_count].first);
     state.velocity.push_back(motion[i - old_count].second);
-    if (!state.acceleration.empty())
-      state.acceleration.push_back(Vec3(state.acceleration[old_donor(i, old_count, donors)]));
+    const std::size_t donor = old_donor(i, old_count, donors);
+    if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[donor]));
+    if (before.galerkin) continue;  // nodes are points
+    if (!state.plastic.empty()) state.plastic.push_back(Mat3(state.plastic[donor]));
+    if (!state.prestretch.empty()) state.prestretch.push_back(Mat3(state.prestretch[donor]));
   }
   std::vector<MovedNode> moved;
   for (const NodeId id : updated) {

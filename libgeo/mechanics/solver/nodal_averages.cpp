@@ -6,7 +6,7 @@
 
 #include "base/uninitialized_array.h"
 #include "kerf/parallel.h"
-#include "mechanics/material/plasticity.h"
+#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 
 namespace geo {
@@ -55,13 +55,13 @@ std::vector<StressSums> nodal_stress_sums(const Solid& solid, const NodeSet& nod
   const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   const auto block_stress = [&](std::size_t b, const PointMatrices<double>& gradient, float* out) {
     const PointBlock& block = points.blocks[b];
+    const PointRelaxation relaxation = relaxation_of(points, b, state);
     std::array<double, 6> components;
     for (std::size_t i = 0; i < block.points.size(); ++i) {
       if (block.points[i].quality == MomentQuality::singular) continue;
       Mat3 f = Mat3::Identity();
       for (int c = 0; c < 3; ++c) f.col(c) += Eigen::Map<const Vec3>(&gradient.column[c][4 * i]);
-      const Mat3 elastic =
-          state.plastic.empty() ? f : Mat3(f * inverse_plastic_stretch(state.plastic[points.first_point(b) + i]));
+      const Mat3 elastic = relaxation.empty() ? f : Mat3(f * relaxation.at(i));
       if (!stress(solid.materials()[block.points[i].material], f, elastic, components)) continue;
       std::copy(components.begin(), components.end(), out + 8 * i);
       out[8 * i + 6] = 1;

@@ -6,26 +6,14 @@
 
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
+#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/material/elastic_lanes.h"
-#include "mechanics/material/plasticity.h"
 #include "mechanics/solver/nodal_averages.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/terms/weighted_sums.h"
 
 namespace geo {
 namespace {
-
-// The inverse plastic deformations of a block's points.
-PointMatrices<double> relaxation_of(const MaterialPoints& points, std::size_t block, const State& state) {
-  PointMatrices<double> result;
-  const std::size_t count = points.blocks[block].points.size();
-  result.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Mat3 inverse = inverse_plastic_stretch(state.plastic[points.first_point(block) + i]);
-    for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&result.column[c][4 * i]) = inverse.col(c);
-  }
-  return result;
-}
 
 double von_mises(const StressSums& sum) {
   const double xy = sum[0] - sum[1], yz = sum[1] - sum[2], zx = sum[2] - sum[0];
@@ -59,15 +47,14 @@ std::vector<double> von_mises_stress(const Solid& solid, const NodeSet& nodes, c
   const MaterialPoints& points = SolidDiscretisation::of(solid).points;
   std::vector<ElasticConstants> constants;  // per material
   for (const Material& m : solid.materials().all()) constants.push_back(elastic_constants(m));
-  const bool plastic = !state.plastic.empty();
   const auto block_stress = [&](std::size_t b, const PointMatrices<double>& gradient, float* out) {
     const PointBlock& block = points.blocks[b];
-    const PointMatrices<double> relaxation = plastic ? relaxation_of(points, b, state) : PointMatrices<double>();
+    const PointRelaxation relaxation = relaxation_of(points, b, state);
     // In a range of mixed materials, all points are computed with the range's material, and results
     // of other materials' points are dropped.
     std::vector<float> scratch(8 * ((block.points.size() + 7) / 8 * 8));
     for (const MaterialRange& run : block.material_ranges) {
-      cauchy_stresses(constants[run.material], {run.begin, run.end}, plastic ? &relaxation : nullptr, gradient,
+      cauchy_stresses(constants[run.material], {run.begin, run.end}, relaxation.history().relaxation, gradient,
                       run.uniform ? out : scratch.data());
       for (std::size_t i = run.begin; i < std::min<std::size_t>(run.end, block.points.size()) && !run.uniform; ++i)
         if (block.belongs_to(run, i)) std::copy_n(&scratch[8 * i], 8, out + 8 * i);

@@ -7,7 +7,7 @@
 
 #include "kerf/error.h"
 #include "mechanics/discretisation/kernel.h"
-#include "mechanics/material/plasticity.h"
+#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/solver/solver_cache.h"
 
@@ -106,6 +106,14 @@ std::size_t Solid::size() const { return discretisation_->size(); }
 double Solid::mass(NodeId i) const { return discretisation_->mass[i.index()]; }
 const Materials& Solid::materials() const { return discretisation_->materials; }
 std::size_t Solid::point_count() const { return discretisation_->points.size(); }
+
+std::vector<Vec3> Solid::point_positions() const {
+  std::vector<Vec3> positions;
+  for (const PointBlock& b : discretisation_->points.blocks)
+    for (const MaterialPoint& p : b.points) positions.push_back(p.position);
+  return positions;
+}
+
 std::vector<Mat3> Solid::gradients(const std::vector<Vec3>& u) const { return discretisation_->mls.gradients(u); }
 
 MomentQualityCounts Solid::moment_quality_counts() const {
@@ -131,9 +139,19 @@ void Solid::set_rotations(const State& state) { discretisation_->mls.set_rotatio
 
 double Solid::energy(const std::vector<Vec3>& u) const { return discretisation_->elastic_energy(u, nullptr); }
 
+double Solid::energy(const State& state) const {
+  return discretisation_->elastic_energy(state.displacement, nullptr, discretisation_->relaxation_of(state));
+}
+
 std::vector<Vec3> Solid::forces(const std::vector<Vec3>& u) const {
   std::vector<Vec3> f;
   discretisation_->elastic_energy(u, &f);
+  return f;
+}
+
+std::vector<Vec3> Solid::forces(const State& state) const {
+  std::vector<Vec3> f;
+  discretisation_->elastic_energy(state.displacement, &f, discretisation_->relaxation_of(state));
   return f;
 }
 
@@ -146,13 +164,17 @@ Mat3 Solid::stress_at(const State& state, const Vec3& x, double radius,
     const PointBlock& block = d.points.blocks[b];
     if (!block.box.meets(Box3{x, x}.grown(radius))) continue;
     std::vector<Mat3> gradient;
+    PointRelaxation relaxation;
     for (std::size_t i = 0; i < block.points.size(); ++i) {
       const MaterialPoint& p = block.points[i];
       const double w = p.volume * kernel((p.position - x).norm() / radius, 1.0);
       if (!(w > 0) || p.quality == MomentQuality::singular || (sees && !sees(p.position))) continue;
-      if (gradient.empty()) gradient = d.points.gradients(b, state.displacement);
+      if (gradient.empty()) {
+        gradient = d.points.gradients(b, state.displacement);
+        relaxation = relaxation_of(d.points, b, state);
+      }
       Mat3 f = Mat3::Identity() + gradient[i];
-      if (!state.plastic.empty()) f = f * inverse_plastic_stretch(state.plastic[d.points.first_point(b) + i]);
+      if (!relaxation.empty()) f = f * relaxation.at(i);
       const double j = f.determinant();
       if (!(j > 0)) continue;  // inverted: it has no Cauchy stress
       const Mat3 cauchy = stress(d.materials[p.material], f) * f.transpose() / j;

@@ -8,6 +8,7 @@
 #include "kerf/error.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/elastic_block.h"
+#include "mechanics/discretisation/point_transfer.h"
 #include "mechanics/material/plasticity.h"
 
 namespace geo {
@@ -56,6 +57,8 @@ void SolidDiscretisation::update_mode_penalty() {
 
 void SolidDiscretisation::update_quadrature_points(const Body& body, State& state, SubdomainInverses& inverses) {
   PointChanges changes;
+  const PointTransfer plastic(points, position, changed, state.plastic);
+  const PointTransfer prestretch(points, position, changed, state.prestretch);
   parallel_invoke(
       [&] { aggregates = Aggregates(position, mls, component, components); },
       [&] {
@@ -71,12 +74,9 @@ void SolidDiscretisation::update_quadrature_points(const Body& body, State& stat
   update_as_rigid();
   apply_held(body, &changes);
   changed.clear();
-  const auto& point_before = changes.old_point;
-  if (state.plastic.empty() || point_before.empty()) return;
-  std::vector<Mat3> plastic(points.size(), Mat3::Zero());
-  for (std::size_t i = 0; i < plastic.size(); ++i)
-    if (point_before[i] != ~0u) plastic[i] = state.plastic[point_before[i]];
-  state.plastic.swap(plastic);
+  if (changes.old_point.empty()) return;
+  state.plastic = plastic.after(points, position, changes.old_point, Mat3::Zero());
+  state.prestretch = prestretch.after(points, position, changes.old_point, Mat3::Identity());
 }
 
 void SolidDiscretisation::update_as_rigid() {
@@ -108,15 +108,16 @@ void SolidDiscretisation::build_preconditioner_levels() {
 }
 
 double SolidDiscretisation::elastic_energy(const std::vector<Vec3>& u, std::vector<Vec3>* force,
-                                           const std::vector<PointMatrices<double>>& relaxation) const {
+                                           const std::vector<PointRelaxation>& relaxation) const {
   std::vector<double> energy(points.blocks.size(), 0), block_sums(force ? 4 * points.scatter_size() : 0);
   const BlockStrain strain(points);
   parallel_for(energy.size(), 1, [&](std::size_t begin, std::size_t end) {
     ElasticBlock::Scratch scratch;
     ElasticBlock elastic(scratch, strain, materials);
     for (std::size_t b = begin; b < end; ++b) {
-      const auto& of_point = elastic.evaluate(b, u, {relaxation.empty() ? nullptr : &relaxation[b], nullptr}, nullptr,
-                                              force ? block_sums.data() + 4 * points.scatter_offset(b) : nullptr);
+      const PointHistory history = relaxation.empty() ? PointHistory{} : relaxation[b].history();
+      const auto& of_point =
+          elastic.evaluate(b, u, history, nullptr, force ? block_sums.data() + 4 * points.scatter_offset(b) : nullptr);
       energy[b] = std::accumulate(of_point.begin(), of_point.end(), 0.0);
     }
   });
@@ -141,18 +142,15 @@ double SolidDiscretisation::elastic_energy(const std::vector<Vec3>& u, std::vect
   return sum;
 }
 
-std::vector<PointMatrices<double>> SolidDiscretisation::relaxation_of(const State& state) const {
+std::vector<PointRelaxation> SolidDiscretisation::relaxation_of(const State& state) const {
   if (!state.plastic.empty() && state.plastic.size() != points.size())
     throw InputError("the plastic strains are not those of this solid");
-  std::vector<PointMatrices<double>> all(is_plastic() && !state.plastic.empty() ? points.blocks.size() : 0);
+  if (!state.prestretch.empty() && state.prestretch.size() != points.size())
+    throw InputError("the prestretch is not that of this solid");
+  const bool relaxes = (is_plastic() && !state.plastic.empty()) || !state.prestretch.empty();
+  std::vector<PointRelaxation> all(relaxes ? points.blocks.size() : 0);
   parallel_for(all.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      all[b].resize(points.blocks[b].points.size());
-      for (std::size_t i = 0; i < points.blocks[b].points.size(); ++i) {
-        const Mat3 inverse = inverse_plastic_stretch(state.plastic[points.first_point(b) + i]);
-        for (int c = 0; c < 3; ++c) Eigen::Map<Vec3>(&all[b].column[c][4 * i]) = inverse.col(c);
-      }
-    }
+    for (std::size_t b = begin; b < end; ++b) all[b] = geo::relaxation_of(points, b, state);
   });
   return all;
 }
@@ -160,6 +158,9 @@ std::vector<PointMatrices<double>> SolidDiscretisation::relaxation_of(const Stat
 void SolidDiscretisation::update_plasticity(State& state, double dt) const {
   if (!is_plastic()) return;
   state.plastic.resize(points.size(), Mat3::Zero());
+  const auto of_stretched = [&](const Mat3& f, std::size_t point) {
+    return state.prestretch.empty() ? f : Mat3(f * state.prestretch[point]);
+  };
   parallel_for(points.blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
       const auto gradient = points.gradients(b, state.displacement);
@@ -167,7 +168,8 @@ void SolidDiscretisation::update_plasticity(State& state, double dt) const {
         Mat3& plastic = state.plastic[points.first_point(b) + i];
         const Material& material = materials[points.blocks[b].points[i].material];
         if (material.yield > 0 && points.blocks[b].points[i].quality != MomentQuality::singular)
-          plastic = plastic_flow(material, plastic, Mat3::Identity() + gradient[i], dt);
+          plastic = plastic_flow(material, plastic,
+                                 of_stretched(Mat3::Identity() + gradient[i], points.first_point(b) + i), dt);
       }
     }
   });

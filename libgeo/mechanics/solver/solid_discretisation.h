@@ -15,6 +15,7 @@
 #include "mechanics/discretisation/held_material.h"
 #include "mechanics/discretisation/nodal_gradients.h"
 #include "mechanics/discretisation/point_lanes.h"
+#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/solver/aggregates.h"
 #include "mechanics/solver/subdomain_inverses.h"
 #include "mechanics/solver/subdomains.h"
@@ -81,11 +82,10 @@ struct SolidDiscretisation {
   /// Elastic energy at displacements u, J; `force`, where given, becomes −∂U/∂u, N per node.
   /// `relaxation`: as relaxation_of() returns it.
   double elastic_energy(const std::vector<Vec3>& u, std::vector<Vec3>* force,
-                        const std::vector<PointMatrices<double>>& relaxation = {}) const;
-  /// Per block and point: the inverse of the plastic part of F, from `state.plastic`; empty where
-  /// nothing has flown. Throws InputError if `state` has plastic strains of another number of
-  /// points.
-  std::vector<PointMatrices<double>> relaxation_of(const State& state) const;
+                        const std::vector<PointRelaxation>& relaxation = {}) const;
+  /// Per block: what elasticity does not see of F, from plastic strain and prestretch; empty where
+  /// there is none. Throws InputError if `state` has those of another number of points.
+  std::vector<PointRelaxation> relaxation_of(const State& state) const;
   /// Lets plastic strain flow for dt seconds at the displacements of `state`.
   void update_plasticity(State& state, double dt) const;
 

@@ -50,6 +50,7 @@ int main(void) {
     cut += frame.cut_edges;
   }
   check(kerf_simulation_end_grip(run, grip));
+  check(kerf_simulation_step(run, tell, &reports, &frame)); /* a blade that is not moved is gone */
   check(kerf_simulation_strike(run, corner, 6));
   check(kerf_simulation_step(run, tell, &reports, &frame));
   check(kerf_simulation_positions(run, NULL, 0, &needed));

@@ -822,11 +822,11 @@ simulation)
   [ "$(grep -c "\"blows\":1,\"blow_parts\":$made," struck/frames.jsonl)" = 1 ] && grep -q "\"blows\":1,\"blow_parts\":$made," struck/summary.json || fail "no blow in one line of frames.jsonl, and in summary.json"
   kerf-sim -q --portable blow.toml -o portable && kerf-sim -q --portable blow.toml -o onward --frames 2 || fail "kerf-sim --portable"
   kerf-sim -q blow.toml -o onward --frames 4 --resume && kerf-sim -q --portable blow.toml -o onward --resume || fail "a portable run that goes on"
-  diff -r portable onward || fail "a portable run made in three parts differs"
+  diff -rq portable onward || fail "a portable run made in three parts differs"
   if grep -qw fma /proc/cpuinfo; then cmp -s portable/frames/frame_0005.ply struck/frames/frame_0005.ply && fail "vectors make no difference"; fi
   kerf-sim -q blow.toml -o fused --frames 2 || fail "kerf-sim"
   expect 65 "fused: was begun without --portable; leave it out, or give another folder" kerf-sim blow.toml -o fused --resume --portable
-  kerf-sim -q blow.toml -o fused --resume && diff -r struck fused || fail "a run that goes on after a refusal differs"
+  kerf-sim -q blow.toml -o fused --resume && diff -rq struck fused || fail "a run that goes on after a refusal differs"
   # Names of files that are empty, as of a shell variable that is not set.
   expect 2 "'body.mesh=' names no file; write body.mesh=FILE" kerf-sim s.toml -o x --set body.mesh=
   expect 2 "'score.0.file=' names no file" kerf-sim s.toml -o x --set score.0.file=

@@ -63,6 +63,9 @@ geo::Simulation resume(const sim::Setup& setup, const sim::RunFolder& folder, st
     geo::Checkpoint c = geo::read_checkpoint(geo::KerfFile(geo::Input(folder.checkpoint().string())));
     if (c.scene != setup.fingerprint)
       throw geo::InputError("was begun with another scene, model or setting; give the same ones, or another folder");
+    if (geo::vectors() == geo::Vectors::portable && c.vectors != geo::Vectors::portable)
+      throw geo::InputError("was begun without --portable; leave it out, or give another folder");
+    if (geo::vectors() != c.vectors) geo::set_vectors(c.vectors);
     if (!run) return geo::Simulation(setup.scene, std::move(c.body), std::move(c.state));
     run->restore(std::move(c.body), std::move(c.state));
     return std::move(*run);
@@ -160,6 +163,12 @@ class RecordedRun {
   geo::FrameStats total_;
 };
 
+// "2 blows made 17 parts, ", or nothing without a blow.
+std::string blows_in_words(const geo::FrameStats& total) {
+  if (total.blows == 0) return "";
+  return tool::counted(total.blows, "blow") + " made " + tool::counted(total.blow_parts, "part") + ", ";
+}
+
 // Writes summary.json, and prints the totals of the run.
 void summarise(const RecordedRun& recorded, const sim::Setup& setup, const sim::RunFolder& folder, int last,
                const tool::Tool& t) {
@@ -177,7 +186,7 @@ void summarise(const RecordedRun& recorded, const sim::Setup& setup, const sim::
   t.say("kerf-sim: " + tool::counted(static_cast<std::size_t>(last), "frame") + ", " + tool::counted(nodes, "node") +
         ", " + tool::counted(edges, "edge") + ", " +
         tool::counted(recorded.total().split.crack.triangles_cut, "triangle") + " cut, " +
-        tool::counted(pieces, "piece") + sim::seconds_in_words(recorded.total()));
+        blows_in_words(run.state().total) + tool::counted(pieces, "piece") + sim::seconds_in_words(recorded.total()));
 }
 
 // Says what the scene does not ask for. Throws tool::Failure for it where the command is strict.
@@ -265,7 +274,7 @@ int main(int argc, char** argv) {
   t.flag("--resume", command.resume, "Continue from the last checkpoint in the output folder; start where it has none");
   t.flag("--portable", command.portable,
          "Vectors of two numbers, without fused products: the bytes of any x86 processor and of the page without a "
-         "server");
+         "server; --resume goes on with those that the run began with");
   t.flag("--strict", command.strict,
          "Fail, with exit code 1, where the run is not as asked for: crumbs, crossings, refused steps, thin material, "
          "lag, energy from nothing");

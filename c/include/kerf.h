@@ -389,6 +389,11 @@ KERF_API kerf_status kerf_simulation_move_pull(kerf_simulation simulation, uint3
 KERF_API kerf_status kerf_simulation_pull_force(kerf_simulation simulation, uint32_t index, double force[3]);
 KERF_API kerf_status kerf_simulation_move_obstacle(kerf_simulation simulation, uint32_t index, const kerf_pose* pose);
 
+/* Breaks the piece nearest to a point of the world into about `cells` parts, 2 to 1000, now; they
+ * fly from the point. Not while a blade is in the body. A blow that breaks nothing gives
+ * KERF_GEOMETRY, and the run is as it was. */
+KERF_API kerf_status kerf_simulation_strike(kerf_simulation simulation, const double point[3], int32_t cells);
+
 /* Values from now on. A number that is not above or equal to 0 (NaN) stays as it was. */
 typedef struct kerf_changes {
   double young, damping, friction, step;

@@ -301,6 +301,17 @@ kerf_status kerf_simulation_move_obstacle(kerf_simulation simulation, uint32_t i
   });
 }
 
+kerf_status kerf_simulation_strike(kerf_simulation simulation, const double point[3], int32_t cells) {
+  return call([&] {
+    constexpr std::int32_t least_cells = 2, max_cells = 1000;  // as in scenes
+    const geo::Vec3 at = point_of(point, "point");
+    if (cells < least_cells || cells > max_cells) throw ArgumentError("cells: give a number from 2 to 1000");
+    const Run use(simulation);
+    require_whole(*use);
+    use->run.strike({.point = at, .cells = cells});
+  });
+}
+
 kerf_status kerf_simulation_change(kerf_simulation simulation, const kerf_changes* changes) {
   return call([&] {
     const kerf_changes& from = required(changes, "changes");

@@ -312,6 +312,8 @@ export interface Simulation extends Owner {
   addBlade(points: Rows, at: Pose, options?: { closed?: boolean; back?: ArrayLike<number>; thickness?: number; stiffness?: number }): Moved;
   addGrip(lo: ArrayLike<number>, hi: ArrayLike<number>): Moved;
   addPull(point: ArrayLike<number>, to: ArrayLike<number>, options?: { stiffness?: number }): Moved;
+  /** Breaks the piece nearest to a point of the world into about `cells` parts (12), now; they fly from the point. */
+  strike(point: ArrayLike<number>, options?: { cells?: number }): void;
   change(values: { young?: number; damping?: number; friction?: number; accuracy?: number; step?: number; gravity?: ArrayLike<number> }): void;
 }
 export interface SimulationOptions {

@@ -58,6 +58,8 @@ export async function begin(scene, { models = [], set = {}, progress, wasm } = {
     addPull(point, to, { stiffness = 100 } = {}) {
       return new Moved(this, "pull", call("addPull", this.handle, rows(point, "point"), rows(to, "to"), stiffness));
     }
+    /** Breaks the piece nearest to a point of the world into about `cells` parts, which fly from it. */
+    strike(point, options = {}) { call("strike", this.handle, rows(point, "point"), options); }
     change(values) { call("change", this.handle, values.gravity === undefined ? values : { ...values, gravity: rows(values.gravity, "gravity") }); }
     /** Bytes of the module's heap that are in use. */
     static usedBytes() { return module.usedBytes(); }

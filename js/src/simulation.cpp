@@ -182,6 +182,14 @@ val add_pull(const RunHandle& run, const val& point, const val& to, double stiff
   });
 }
 
+val strike(const RunHandle& run, const val& point, const val& options) {
+  return guarded([&] {
+    geo::Blow blow{.point = point_from(point, "point")};
+    take(options, "cells", blow.cells, 2, 1000);
+    run->strike(blow);
+  });
+}
+
 val change(const RunHandle& run, const val& values) {
   return guarded([&] {
     geo::SceneChange changes;
@@ -216,6 +224,7 @@ EMSCRIPTEN_BINDINGS(kerf_simulation) {
   emscripten::function("addGrip", &add_grip);
   emscripten::function("endGrip", &end_grip);
   emscripten::function("addPull", &add_pull);
+  emscripten::function("strike", &strike);
   emscripten::function("change", &change);
   emscripten::function("usedBytes", &used_bytes);
 }

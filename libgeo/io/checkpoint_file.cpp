@@ -6,10 +6,13 @@
 #include "io/body_sections.h"
 #include "io/json_integer.h"
 #include "kerf/files.h"
+#include "kerf/vectors.h"
 #include "simulation/fracture_front.h"
 
 namespace geo {
 namespace {
+
+constexpr const char* portable_name = "portable";  // of vectors; files of runs with the widest do not name them
 
 // Calls each(name, count) for the counts of a run.
 template <class Work, class Each>
@@ -29,6 +32,8 @@ void counts(Work& w, const Each& each) {
   each("held", w.contact.held);
   each("nodes_updated", w.split.nodes_updated);
   each("nodes_added", w.split.nodes_added);
+  each("blows", w.blows);
+  each("blow_parts", w.blow_parts);
 }
 
 nlohmann::ordered_json about_front(const FrontState& f, std::vector<Vec3>& places) {
@@ -192,6 +197,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
                                   {"scene", scene},
                                   {"fronts", nlohmann::ordered_json::array()},
                                   {"counts", nlohmann::ordered_json::object()}};
+  if (vectors() == Vectors::portable) about["vectors"] = portable_name;
   for (const auto& blade : state.fronts) {
     about["fronts"].push_back(nlohmann::ordered_json::array());
     for (const EdgeFront& edge : blade) {
@@ -253,7 +259,7 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
 
 Checkpoint read_checkpoint(const KerfFile& file) {
   if (file.sections().count("run/about") == 0) file.fail("is no checkpoint of a run");
-  Checkpoint c{read_body(file), {}, 0};
+  Checkpoint c{.body = read_body(file), .state = {}};
   RunState& state = c.state;
   state.motion.displacement = read_points(file, "run/displacement");
   state.motion.velocity = read_points(file, "run/velocity");
@@ -284,6 +290,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   try {
     state.frame = json_integer<int>(about.at("frame"));
     c.scene = json_integer<std::uint64_t>(about.at("scene"));
+    if (about.value("vectors", "") == portable_name) c.vectors = Vectors::portable;
     for (const auto& blade : about.at("fronts")) {
       state.fronts.emplace_back();
       for (const auto& front : blade) {

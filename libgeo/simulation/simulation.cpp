@@ -7,6 +7,7 @@
 
 #include "kerf/error.h"
 #include "kerf/parallel.h"
+#include "kerf/pieces.h"
 #include "mechanics/discretisation/deformation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "simulation/blow.h"
@@ -37,10 +38,14 @@ struct Simulation::Impl {
 
   RunData run;
   std::unique_ptr<TimeLoop> loop;
-  std::size_t given_blows;  // of the scene that the run began with; later ones have fallen already
+  std::size_t given_blows;                // of the scene that the run began with; later ones have fallen already
+  std::size_t blows = 0, blow_parts = 0;  // since the last frame
 
   void strike(RunStart broken) {
+    const std::uint32_t before = find_pieces(run.body.surface).count;
     run.become(std::move(broken));
+    ++blows;
+    blow_parts += find_pieces(run.body.surface).count - before + 1;
     loop = std::make_unique<TimeLoop>(run);
   }
 };
@@ -67,6 +72,7 @@ const Scene& Simulation::scene() const { return impl_->run.scene; }
 
 void Simulation::restore(Body body, RunState state) {
   impl_->run.restore(std::move(body), std::move(state));
+  impl_->blows = impl_->blow_parts = 0;
   impl_->loop = std::make_unique<TimeLoop>(impl_->run);
 }
 
@@ -165,7 +171,13 @@ FrameStats Simulation::advance_frame(const Progress& progress) {
   for (std::size_t b = 0; b < impl_->given_blows; ++b)
     if (const Blow& blow = scene().blows[b]; blow.time <= now && (state().frame == 0 || blow.time > now - frame))
       impl_->strike(broken_by(*this, blow));
-  return impl_->loop->advance_frame(progress);
+  FrameStats stats = impl_->loop->advance_frame(progress);
+  const std::size_t blows = std::exchange(impl_->blows, 0), parts = std::exchange(impl_->blow_parts, 0);
+  for (FrameStats* to : {&stats, &impl_->run.state.total}) {
+    to->blows += blows;
+    to->blow_parts += parts;
+  }
+  return stats;
 }
 
 TriangleMesh Simulation::surface(const TriangleMesh* model) const {

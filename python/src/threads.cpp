@@ -28,6 +28,9 @@ void bind_threads(py::module_& module) {
       "ones.\n"
       "The latter give the bytes of any x86 processor, and of WebAssembly. Call it while no other call runs.\n"
       "Raises InputError for other words.");
+  module.def(
+      "vectors", [] { return geo::vectors() == geo::Vectors::portable ? "portable" : "widest"; },
+      "The kind of vectors in use: 'widest' or 'portable'.");
 }
 
 }  // namespace kerf_python

@@ -24,6 +24,7 @@ int main(void) {
       "[[body]]\nname = \"block\"\nmesh = \"given\"\nnodes = 150\n"
       "[material]\nyoung = 3e4\n[ground]\npoint = [0, 0, 0]\n[time]\nstep = 0.02\n";
   const double size[3] = {1, 1, 1}, low[3] = {-1, -1, 0.8}, high[3] = {0.2, 2, 2}, edge[6] = {0.5, -1, 0, 0.5, 2, 0};
+  const double corner[3] = {1, 1, 1};
   kerf_pose pose = {{0, 0, 1.1}, {1, 0, 0, 0}};
   kerf_mesh block, surface;
   kerf_simulation run;
@@ -49,6 +50,9 @@ int main(void) {
     cut += frame.cut_edges;
   }
   check(kerf_simulation_end_grip(run, grip));
+  check(kerf_simulation_step(run, tell, &reports, &frame)); /* a blade that is not moved is gone */
+  check(kerf_simulation_strike(run, corner, 6));
+  check(kerf_simulation_step(run, tell, &reports, &frame));
   check(kerf_simulation_positions(run, NULL, 0, &needed));
   positions = malloc(needed * sizeof *positions);
   if (!positions) return 1;

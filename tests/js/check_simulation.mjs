@@ -40,6 +40,12 @@ async function run() {
   grip.end(), simulation.change({ young: 1e5, gravity: [0, 0, 0] });
   simulation.step();
   assert.equal(new TextDecoder().decode(simulation.save("ply").subarray(0, 3)), "ply");
+  const total = simulation.pieceCount;
+  for (const wrong of [{ cells: 1 }, { cells: 2.5 }, { cells: 1e4 }]) assert.throws(() => simulation.strike([1, 1, 1], wrong), { name: "InputError" });
+  for (const point of [[0, 0], [0, 0, NaN]]) assert.throws(() => simulation.strike(point), { name: "InputError" });
+  simulation.strike([1, 1, 1], { cells: 5 });
+  assert.ok(simulation.pieceCount > total);
+  assert.ok(simulation.step().kinetic > 0);
   assert.throws(() => simulation.blade(7).move([0, 0, 0]), /blade 7/);
   made.delete(), simulation.delete(), block.delete();
   return simulation.constructor.usedBytes();

@@ -16,6 +16,7 @@ const complex = cube.crack([k.score(cube, { pieces: 3 }), new k.Front([[[0, 0, 0
 const bytes: Uint8Array = complex.save("glb", { zUp: true });
 const run = await k.simulation("[body]", { models: [cube, upper, lower], set: { "material.young": 2e5 } });
 const elastic: number = run.step().elastic + run.addBlade([[0, 0, 0]], [0, 0, 1]).index;
+run.strike([0, 0, 1], { cells: 5 });
 mesh[Symbol.dispose]();
 try {
   k.load(bytes, "glb").delete();
@@ -33,5 +34,7 @@ new k.Solid("cube.obj");
 cube.vertices = new Float64Array(3);
 // @ts-expect-error: the energy is missing
 glass.strike([0, 0, 0]);
+// @ts-expect-error: no such option
+run.strike([0, 0, 1], { pieces: 5 });
 // @ts-expect-error: no file of this kind is written
 complex.save("fbx");

@@ -329,6 +329,14 @@ class Hands(unittest.TestCase):
                     self.assertEqual(again.surface().vertices.tobytes(), surface.tobytes(), f"seed {seed}, frame {frame}")
             self.assertGreater(cut, 0)
 
+    def test_kinds_of_vectors(self):
+        self.assertEqual(kerf.vectors(), "widest")
+        self.addCleanup(kerf.set_vectors, "widest")
+        kerf.set_vectors("portable")
+        self.assertEqual(kerf.vectors(), "portable")
+        self.assertRaises(kerf.InputError, kerf.set_vectors, "narrow")
+        self.assertEqual(kerf.vectors(), "portable")
+
     def test_blows(self):
         scene = SCENE.split("[[blade]]")[0]  # a blade in the body would be in the way
         def pieces_of(run):

@@ -310,6 +310,15 @@ def runs():
     run(f"kerf-sim s.toml -o run {option} && kerf-sim s.toml -o other && rm -r run && kerf-sim s.toml -o run")
 
 
+@case("was begun without --portable; leave it out, or give another folder")
+def kinds_of_vectors():
+    run("kerf-model block --edge 0.25 -o block.ply")
+    scene("s.toml", "[body]\nmesh = 'block.ply'\nnodes = 60", frames=2)
+    run("kerf-sim s.toml -o run --frames 1")
+    said("kerf-sim s.toml -o run --resume --portable", r"leave it out, or give another folder")
+    run("kerf-sim s.toml -o run --resume && kerf-sim s.toml -o other --resume --portable")
+
+
 @case(" apart; a surface bends and touches at its vertices: kerf-repair --edge ")
 def coarse_models():
     box("box.obj", ((0, 0, 0), 1))

@@ -814,6 +814,19 @@ simulation)
   expect 65 "no row 3" kerf-sim s.toml -o x --set blade.3.thickness=1
   expect 65 "names no row" kerf-sim s.toml -o x --set blade.first.thickness=1
   expect 65 "another scene" kerf-sim s.toml -o whole --resume --set material.young=2e5
+  # A run goes on with the vectors that it began with. A blow says what it made.
+  printf '[body]\nmesh = "cube.ply"\nspacing = 0.2\n[ground]\npoint = [0, 0, 0]\n[contact]\nself = true\n[[blow]]\ntime = 0.1\npoint = [0.3, 0.4, 1]\ncells = 6\n[time]\nframes = 5\nframe_rate = 24\nstep = 0.02\ncheckpoint_every = 1\n' >blow.toml
+  kerf-sim blow.toml -o struck 2>said.txt || fail "a run with a blow: $(cat said.txt)"
+  made=$(grep -o '"pieces":[0-9]*' struck/summary.json | cut -d: -f2)
+  [ "$made" -gt 1 ] && grep -q " 1 blow made $made parts, $made pieces" said.txt || fail "kerf-sim says of a blow: $(cat said.txt)"
+  [ "$(grep -c "\"blows\":1,\"blow_parts\":$made," struck/frames.jsonl)" = 1 ] && grep -q "\"blows\":1,\"blow_parts\":$made," struck/summary.json || fail "no blow in one line of frames.jsonl, and in summary.json"
+  kerf-sim -q --portable blow.toml -o portable && kerf-sim -q --portable blow.toml -o onward --frames 2 || fail "kerf-sim --portable"
+  kerf-sim -q blow.toml -o onward --frames 4 --resume && kerf-sim -q --portable blow.toml -o onward --resume || fail "a portable run that goes on"
+  diff -rq portable onward || fail "a portable run made in three parts differs"
+  if grep -qw fma /proc/cpuinfo; then cmp -s portable/frames/frame_0005.ply struck/frames/frame_0005.ply && fail "vectors make no difference"; fi
+  kerf-sim -q blow.toml -o fused --frames 2 || fail "kerf-sim"
+  expect 65 "fused: was begun without --portable; leave it out, or give another folder" kerf-sim blow.toml -o fused --resume --portable
+  kerf-sim -q blow.toml -o fused --resume && diff -rq struck fused || fail "a run that goes on after a refusal differs"
   # Names of files that are empty, as of a shell variable that is not set.
   expect 2 "'body.mesh=' names no file; write body.mesh=FILE" kerf-sim s.toml -o x --set body.mesh=
   expect 2 "'score.0.file=' names no file" kerf-sim s.toml -o x --set score.0.file=

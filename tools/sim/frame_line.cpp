@@ -57,6 +57,7 @@ std::string counts(const geo::FrameStats& stats) {
          of("bonds_broken", stats.fracture.broken) + "," + of("refused", stats.refused) + "," +
          of("triangles_cut", stats.split.crack.triangles_cut) + "," + of("edges_cut", stats.split.edges_cut) + "," +
          of("nodes_updated", stats.split.nodes_updated) + "," + of("nodes_added", stats.split.nodes_added) + "," +
+         of("blows", stats.blows) + "," + of("blow_parts", stats.blow_parts) + "," +
          of("touching", stats.contact.touching) + "," + of("in_zones", stats.contact.in_zones) + "," +
          of("held", stats.contact.held);
 }

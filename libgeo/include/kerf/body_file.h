@@ -16,6 +16,7 @@
 #include "kerf/body.h"
 #include "kerf/files.h"
 #include "kerf/simulation.h"
+#include "kerf/vectors.h"
 
 namespace geo {
 
@@ -135,10 +136,12 @@ std::uint64_t write_body(KerfUpdate& file, const Body& body);
 struct Checkpoint {
   Body body;
   RunState state;
-  std::uint64_t scene = 0;  ///< fingerprint of the scene and its models
+  std::uint64_t scene = 0;            ///< fingerprint of the scene and its models
+  Vectors vectors = Vectors::widest;  ///< that the run is computed with
 };
 
-/// Writes a body as write_body() does, then sections `run/…`. The same run gives the same bytes.
+/// Writes a body as write_body() does, then sections `run/…`, and the kind of vectors in use. The
+/// same run gives the same bytes.
 void write_checkpoint(std::ostream& out, const Body& body, const RunState& state, std::uint64_t scene);
 /// Reads a checkpoint. Throws InputError as read_body(), and where sections of the run are missing
 /// or impossible.

@@ -91,6 +91,8 @@ struct FrameStats {
   std::size_t newton = 0;        ///< Newton iterations
   std::size_t cg = 0;            ///< conjugate-gradient iterations
   std::size_t steps = 0;         ///< time steps
+  std::size_t blows = 0;         ///< since the frame before
+  std::size_t blow_parts = 0;    ///< that the blows made of the pieces that they hit
   double fracture_seconds = 0;   ///< stresses and plans, without the splits
   double front_seconds = 0;      ///< mapping of blades into the material, as far as it is not beside contact
   double mechanics_seconds = 0;  ///< after a cut, points of the solid count in the next frame, as far as they are not

@@ -13,4 +13,7 @@ enum class Vectors {
 /// always the portable ones; on other processors than x86 there is no choice.
 void set_vectors(Vectors kind);
 
+/// The kind that is in use. In WebAssembly that is the portable one.
+Vectors vectors();
+
 }  // namespace geo

@@ -1,5 +1,6 @@
 // begin_run() of kerf/simulation.h. Order: sample and build the body, insert the prescored cracks,
-// then assign velocities and prestretch. Nodes that a crack inserts belong to the body of their donor.
+// then assign velocities and prestretch. Nodes that a crack inserts belong to the body of their
+// donor.
 #include <algorithm>
 #include <cmath>
 #include <utility>

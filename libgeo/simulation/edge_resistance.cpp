@@ -10,7 +10,7 @@
 namespace geo {
 namespace {
 
-// A vertex of a front: where the edge parameter of its segment is, and the length that belongs to it.
+// A vertex of a front: its place in a segment, and the length that belongs to it.
 struct FrontVertex {
   VertexId id;
   std::size_t segment;

@@ -14,15 +14,15 @@
 
 namespace geo {
 
-/// How far the edge of a blade with a resistance is ahead of its front where the material gives way,
-/// in node spacings: as near as a cut follows an edge.
+/// How far the edge of a blade with a resistance is ahead of its front where it cuts, in node
+/// spacings: as near as a cut follows an edge.
 constexpr double edge_lead = resolved_by_front;
 
 /// Springs between the edges of blades and the vertices of the fronts that they leave. A spring
-/// pushes a vertex ahead, across the edge, with a force of at most R ℓ, R the resistance of the
-/// blade and ℓ the length of front that belongs to the vertex. It reaches that at edge_lead, where
-/// BladeCuts lets the front go on: so an area A takes the work R A. An edge that goes back in its
-/// cut exerts nothing (Atkins and Mai 1985 on cutting with energy per area).
+/// exerts a force on a vertex, across the edge, of at most R ℓ: R is the resistance of the blade and
+/// ℓ the length of front that belongs to the vertex. It reaches that at edge_lead, where BladeCuts
+/// lets the front go on: so an area A takes the work R A. An edge that goes back in its cut exerts
+/// nothing. Cutting with an energy per area: Atkins and Mai 1985.
 class EdgeResistance : public Potential {
  public:
   /// Refers to the scene.
@@ -46,7 +46,7 @@ class EdgeResistance : public Potential {
   Stencil stencil(std::size_t k) const override { return weights_->stencil(springs_[k].vertex); }
   /// The nodes that carry a vertex lie in one component.
   bool within_components() const override { return true; }
-  /// Of the spring, J: ½ k s² up to its largest force, linear in the stretch s beyond.
+  /// Energy of the spring, J: ½ k s² up to its largest force, linear in the stretch s beyond.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of this.
   Derivatives derivatives(std::size_t k, const Vec3& d) const override;
@@ -59,6 +59,7 @@ class EdgeResistance : public Potential {
     Vec3 rest, begin, end, now;  // of the vertex without displacement; of the edge, world
     Mat3 across;                 // takes off the part along the edge
     double limit, lead;          // largest force, N; stretch where it is reached, model units
+    /// From the vertex at displacement d to the edge, across the edge.
     Vec3 stretch(const Vec3& d) const { return across * (now - rest - d); }
   };
   struct FrontInStep;

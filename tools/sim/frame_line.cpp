@@ -63,19 +63,18 @@ std::string counts(const geo::FrameStats& stats) {
 }
 
 std::string line_of(const FrameOutcome& o, std::size_t crossings) {
-  std::string line = "{\"frame\":" + std::to_string(o.frame) + ",\"time\":" + tool::number(o.time) +
-                     ",\"nodes\":" + std::to_string(o.nodes) + ",\"faces\":" + std::to_string(o.faces) + "," +
-                     counts(o.stats) + ",\"crossings\":" + std::to_string(crossings) +
-                     ",\"lag\":" + tool::number(o.stats.contact.tracking_error) +
-                     ",\"sheet_deviation\":" + tool::number(o.stats.sheet.deviation) +
-                     ",\"sheet_turning\":" + tool::number(o.stats.sheet.turning) +
-                     ",\"retreating\":" + std::to_string(o.stats.sheet.retreating) +
-                     ",\"crumbs\":" + std::to_string(o.stats.sheet.crumbs) +
-                     ",\"broken_area\":" + tool::number(o.stats.fracture.broken_area) +
-                     ",\"surface_energy\":" + tool::number(o.stats.fracture.spent) +
-                     ",\"energy\":" + tool::number(o.stats.energy) + ",\"kinetic\":" + tool::number(o.stats.kinetic) +
-                     ",\"weight\":" + tool::number(o.stats.weight) +
-                     ",\"cut_energy\":" + tool::number(o.stats.cut_energy) + ",\"blade_force\":[";
+  std::string line =
+      "{\"frame\":" + std::to_string(o.frame) + ",\"time\":" + tool::number(o.time) +
+      ",\"nodes\":" + std::to_string(o.nodes) + ",\"faces\":" + std::to_string(o.faces) + "," + counts(o.stats) +
+      ",\"crossings\":" + std::to_string(crossings) + ",\"lag\":" + tool::number(o.stats.contact.tracking_error) +
+      ",\"sheet_deviation\":" + tool::number(o.stats.sheet.deviation) +
+      ",\"sheet_turning\":" + tool::number(o.stats.sheet.turning) +
+      ",\"retreating\":" + std::to_string(o.stats.sheet.retreating) +
+      ",\"crumbs\":" + std::to_string(o.stats.sheet.crumbs) +
+      ",\"broken_area\":" + tool::number(o.stats.fracture.broken_area) +
+      ",\"surface_energy\":" + tool::number(o.stats.fracture.spent) + ",\"energy\":" + tool::number(o.stats.energy) +
+      ",\"kinetic\":" + tool::number(o.stats.kinetic) + ",\"weight\":" + tool::number(o.stats.weight) +
+      ",\"cut_energy\":" + tool::number(o.stats.cut_energy) + ",\"blade_force\":[";
   for (std::size_t b = 0; b < o.stats.blade_force.size(); ++b) line += (b ? "," : "") + vector(o.stats.blade_force[b]);
   line += "],\"obstacles\":[";
   for (std::size_t k = 0; k < o.stats.obstacle_force.size(); ++k)

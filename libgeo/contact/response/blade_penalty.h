@@ -79,7 +79,9 @@ class BladePenalty : public Potential {
     FrictionMemory memory = {};
     /// Depth of the node's surface beyond the plane, at displacement u of the node; 0 outside.
     double depth(const Vec3& u) const { return std::max(0.0, offset - normal.dot(u)); }
+    /// With the bound of this iterate.
     LaggedFriction friction() const { return {coefficient * memory.normal_force, regularisation}; }
+    /// Along the plane, since the substep's begin, against the blade.
     Vec3 slip(const Vec3& u) const { return (u - stuck) - normal.dot(u - stuck) * normal; }
   };
   std::vector<Contact> contacts_;

@@ -99,7 +99,7 @@ struct FractureOptions : Breakage {
 };
 
 /// How far the material of a body at rest is stretched from its state without stress, as tissue in
-/// a living body is. What is cut then opens.
+/// a living body is. Cuts in it open.
 struct Prestretch {
   Vec3 stretch = Vec3::Ones();  ///< along the axes of the material coordinates, 1: none
   double skin = 1;              ///< further, in the plane of the skin, as far as `depth` below it

@@ -30,7 +30,7 @@ struct PointRelaxation {
   }
 };
 
-/// The symmetric V of F = V R: what isotropic elasticity sees of a stretch that comes before others.
+/// The symmetric V of F = V R: what isotropic elasticity sees of a stretch before others.
 Mat3 left_stretch(const Mat3& f);
 
 /// The relaxation of a block's points.

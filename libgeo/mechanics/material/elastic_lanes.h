@@ -41,8 +41,8 @@ void elastic_response(const ElasticConstants& constants, PointRange range, const
                       PointMatrices<float>* elastic_gradient);
 
 /// Cauchy stress of points with displacement gradient `gradient` and, unless null, a relaxation.
-/// Eight numbers per point from stress[8 · point] on: xx, yy, zz, xy, yz, zx in Pa, then 1, then 0. All are zero where
-/// det F ≤ 0.
+/// Eight numbers per point from stress[8 · point] on: xx, yy, zz, xy, yz, zx in Pa, then 1, then 0.
+/// All are zero where det F ≤ 0.
 void cauchy_stresses(const ElasticConstants& constants, PointRange range, const PointMatrices<double>* relaxation,
                      const PointMatrices<double>& gradient, float* stress);
 

@@ -13,7 +13,7 @@
 #include "body/locate.h"
 #include "geometry/distance.h"
 #include "kerf/parallel.h"
-#include "mechanics/discretisation/relaxation.h"
+#include "mechanics/solver/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "sampling/node_grid.h"
 

@@ -19,8 +19,8 @@ namespace geo {
 constexpr double edge_lead = resolved_by_front;
 
 /// Springs between the edges of blades and the vertices of the fronts that they leave. A spring
-/// exerts a force on a vertex, across the edge, of at most R ℓ: R is the resistance of the blade and
-/// ℓ the length of front that belongs to the vertex. It reaches that at edge_lead, where BladeCuts
+/// exerts a force on a vertex, across the edge, of at most R ℓ: R is the blade's resistance, and ℓ
+/// the length of front that belongs to the vertex. It reaches that at edge_lead, where BladeCuts
 /// lets the front go on: so an area A takes the work R A. An edge that goes back in its cut exerts
 /// nothing. Cutting with an energy per area: Atkins and Mai 1985.
 class EdgeResistance : public Potential {

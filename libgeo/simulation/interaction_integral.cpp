@@ -12,7 +12,7 @@
 #include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "geometry/distance.h"
-#include "mechanics/discretisation/relaxation.h"
+#include "mechanics/solver/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "simulation/fracture_front.h"
 #include "simulation/fracture_tip.h"

@@ -8,7 +8,7 @@
 
 #include "geometry/distance.h"
 #include "kerf/error.h"
-#include "mechanics/discretisation/relaxation.h"
+#include "mechanics/solver/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "simulation/scene_body.h"
 

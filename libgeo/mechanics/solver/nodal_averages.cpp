@@ -6,7 +6,7 @@
 
 #include "base/uninitialized_array.h"
 #include "kerf/parallel.h"
-#include "mechanics/discretisation/relaxation.h"
+#include "mechanics/solver/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 
 namespace geo {

@@ -6,9 +6,9 @@
 
 #include "kerf/parallel.h"
 #include "kerf/solid.h"
-#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/material/elastic_lanes.h"
 #include "mechanics/solver/nodal_averages.h"
+#include "mechanics/solver/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/terms/weighted_sums.h"
 

@@ -7,7 +7,7 @@
 
 #include "kerf/error.h"
 #include "mechanics/discretisation/kernel.h"
-#include "mechanics/discretisation/relaxation.h"
+#include "mechanics/solver/relaxation.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "mechanics/solver/solver_cache.h"
 

@@ -15,8 +15,8 @@
 #include "mechanics/discretisation/held_material.h"
 #include "mechanics/discretisation/nodal_gradients.h"
 #include "mechanics/discretisation/point_lanes.h"
-#include "mechanics/discretisation/relaxation.h"
 #include "mechanics/solver/aggregates.h"
+#include "mechanics/solver/relaxation.h"
 #include "mechanics/solver/subdomain_inverses.h"
 #include "mechanics/solver/subdomains.h"
 

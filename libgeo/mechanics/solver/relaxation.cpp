@@ -1,6 +1,6 @@
 // Elasticity sees F V P⁻¹, V the prestretch and P the plastic stretch. It is isotropic, so that a
 // rotation on the right does not count: the left stretch of V P⁻¹ stands for it.
-#include "mechanics/discretisation/relaxation.h"
+#include "mechanics/solver/relaxation.h"
 
 #include <Eigen/Eigenvalues>
 

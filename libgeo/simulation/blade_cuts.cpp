@@ -166,7 +166,8 @@ void BladeCuts::make_cut(std::size_t b, PlannedCut plan, FrameStats& stats) {
     advance.edge.front = std::move(written->front);
     collapse(advance.edge, plan.runs[r]);
     state_.fronts[b][r] = std::move(advance.edge);
-    stats.cut_energy += scene_.blades[b].resistance * area_of(body_.surface, written->faces);
+    const double resistance = scene_.blades[b].resistance;
+    if (resistance > 0) stats.cut_energy += resistance * area_of(body_.surface, written->faces);
     stats.sheet.deviation = std::max(stats.sheet.deviation, advance.deviation);
     const double lowest = 0.1 * *std::min_element(advance.spacing.begin(), advance.spacing.end());
     stats.sheet.turning = std::max(stats.sheet.turning, sheet_turning(body_.surface, written->faces, lowest));

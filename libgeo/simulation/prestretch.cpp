@@ -131,12 +131,12 @@ void bear_load(const Scene& scene, RunStart& run, const Progress& progress) {
   RunState state = run.state;
   state.fronts.clear();
   state.glued = {};
+  state.motion.displacement.assign(nodes, Vec3::Zero());
+  state.motion.velocity.assign(nodes, Vec3::Zero());
+  Simulation settling(still, run.body, state);
   double least = std::numeric_limits<double>::infinity();
   for (int round = 0, best = 0; round < std::min(max_rounds, best + patience); ++round) {
     report(progress, "settling", static_cast<std::size_t>(round), static_cast<std::size_t>(max_rounds));
-    state.motion.displacement.assign(nodes, Vec3::Zero());
-    state.motion.velocity.assign(nodes, Vec3::Zero());
-    Simulation settling(still, run.body, state);
     for (int s = 0; s < steps; ++s) settling.advance_frame();
     const State& end = settling.state().motion;
     const double change = largest_norm(end.displacement) / run.body.finest_spacing;
@@ -153,6 +153,7 @@ void bear_load(const Scene& scene, RunStart& run, const Progress& progress) {
     const MaterialPoints& points = SolidDiscretisation::of(settling.solid()).points;
     state.motion.prestretch.resize(points.size(), Mat3::Identity());
     add_deformation(points, end.displacement, state.motion.prestretch);
+    settling.restore(run.body, state);
   }
   throw GeometryError(
       "the bodies do not come to rest under their load in this shape; hold them by 'body.fixed' or a ground, make "

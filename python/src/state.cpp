@@ -45,6 +45,20 @@ void vectors(py::class_<State, std::shared_ptr<State>>& state, const char* name,
       doc);
 }
 
+// A property, not to be assigned, with one matrix per material point; None where there are none.
+void matrices(py::class_<State, std::shared_ptr<State>>& state, const char* name,
+              std::vector<geo::Mat3> geo::State::*member, py::object State::*kept, const char* doc) {
+  state.def_property_readonly(
+      name,
+      [member, kept](State& self) -> py::object {
+        const Reading reading(self.busy);
+        if ((self.state.*member).empty()) return py::none();
+        if (!(self.*kept)) self.*kept = moved_matrices(self.state.*member);
+        return self.*kept;
+      },
+      doc);
+}
+
 geo::Environment environment_from(const py::kwargs& given) {
   Keywords k(given, "Environment");
   geo::Environment e;
@@ -98,26 +112,12 @@ void bind_state(py::module_& module) {
   vectors(state, "velocity", &geo::State::velocity, &State::velocity, "(n, 3) float64, model units per second.");
   vectors(state, "acceleration", &geo::State::acceleration, &State::acceleration,
           "(n, 3) float64 of the last time step, for the inertial predictor; None: unknown.");
+  matrices(state, "plastic", &geo::State::plastic, &State::plastic,
+           "(points, 3, 3) float64: plastic part of the Green strain per material point; None: none yet.");
+  matrices(state, "prestretch", &geo::State::prestretch, &State::prestretch,
+           "(points, 3, 3) float64: symmetric stretch of the material at rest from its state without stress, per\n"
+           "material point; None: none.");
   state
-      .def_property_readonly(
-          "plastic",
-          [](State& self) -> py::object {
-            const Reading reading(self.busy);
-            if (self.state.plastic.empty()) return py::none();
-            if (!self.plastic) self.plastic = moved_matrices(self.state.plastic);
-            return self.plastic;
-          },
-          "(points, 3, 3) float64: plastic part of the Green strain per material point; None: none yet.")
-      .def_property_readonly(
-          "prestretch",
-          [](State& self) -> py::object {
-            const Reading reading(self.busy);
-            if (self.state.prestretch.empty()) return py::none();
-            if (!self.prestretch) self.prestretch = moved_matrices(self.state.prestretch);
-            return self.prestretch;
-          },
-          "(points, 3, 3) float64: symmetric stretch of the material at rest from its state without stress, per\n"
-          "material point; None: none.")
       .def(
           "copy",
           [](State& self) {

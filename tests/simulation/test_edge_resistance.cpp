@@ -10,6 +10,7 @@
 #include "kerf/files.h"
 #include "kerf/mesh.h"
 #include "kerf/simulation.h"
+#include "simulation/single_body.h"
 
 using namespace geo;
 
@@ -17,12 +18,7 @@ namespace {
 
 // A block of gel that stands on held material, and a straight edge that goes down through it.
 Scene gel(double resistance, double spacing) {
-  Scene s;
-  s.bodies.resize(1);
-  s.bodies[0].sampling.spacing = spacing;
-  s.bodies[0].sampling.levels = 1;
-  s.material = {.young = 1e5, .poisson = 0.3, .density = 1000, .damping = 0};
-  s.gravity = Vec3::Zero();
+  Scene s = single_body_scene(spacing);
   s.frames = 30;
   s.grips = {{.lo = {-1, -1, -1}, .hi = {1, 1, 0.009}}};
   Blade blade{.name = "knife", .points = {{0.05, -0.02, 0.05}, {0.05, 0.08, 0.05}}};

@@ -13,6 +13,7 @@
 #include "kerf/files.h"
 #include "kerf/mesh.h"
 #include "kerf/simulation.h"
+#include "simulation/single_body.h"
 
 using namespace geo;
 
@@ -22,12 +23,7 @@ constexpr double e = 1e-6, far = 9;
 
 // A scene in which each frame ends in equilibrium: a frame is long beside the waves in the body.
 Scene still_scene(double spacing) {
-  Scene s;
-  s.bodies.resize(1);
-  s.bodies[0].sampling.spacing = spacing;
-  s.bodies[0].sampling.levels = 1;
-  s.material = {.young = 1e5, .poisson = 0.3, .density = 1000, .damping = 0};
-  s.gravity = Vec3::Zero();
+  Scene s = single_body_scene(spacing);
   s.frame_rate = 0.1;
   s.dt = 10;
   s.accuracy = 1e-6;

@@ -86,8 +86,8 @@ class Solid {
   /// Updates the discretisation and `state` after a split; the result equals a build from scratch,
   /// bit for bit. New nodes take the motion of old nodes around them and their donors' material.
   /// Each component of the graph then gets the rigid motion that restores its linear momentum and
-  /// its angular momentum about its centre of mass. Plastic
-  /// strain and prestretch stay with their point; new points have the mean of those about them.
+  /// its angular momentum about its centre of mass. Plastic strain and prestretch stay with their
+  /// point; new points have the mean of those about them.
   void update(const Body& body, const BodyDelta& delta, State& state);
   /// First half of update(), after each split: nodes, their motion and their gradients.
   void update_nodes(const Body& body, const BodyDelta& delta, State& state);

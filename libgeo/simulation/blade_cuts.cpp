@@ -16,15 +16,6 @@
 namespace geo {
 namespace {
 
-// Where an edge presses on its front, the front stays behind by edge_lead.
-void stay_behind(const FrontState& front, std::span<const double> spacing, std::vector<Vec3>& to) {
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    const Vec3& from = front.points[i].position;
-    const double way = (to[i] - from).norm(), lead = edge_lead * spacing[i];
-    to[i] = way > lead ? Vec3(from + (1 - lead / way) * (to[i] - from)) : from;
-  }
-}
-
 // Undeformed area of faces, model units².
 double area_of(const Complex& surface, std::span<const FaceId> faces) {
   double area = 0;
@@ -118,7 +109,7 @@ BladeCuts::PlannedCut BladeCuts::plan_cut(const MovedBody& moved, std::size_t b,
     if (plan.advances[r].rests) continue;
     const EdgeFront& front = state_.fronts[b][r];
     const FrontAnchor anchor(body_.surface, *start, blade, front);
-    plan.advances[r] = plan_advance(front, plan.runs[r], *half, blade, anchor);
+    plan.advances[r] = plan_advance(front, plan.runs[r], *half, blade, anchor, moved.solid);
   }
   return plan;
 }
@@ -126,7 +117,7 @@ BladeCuts::PlannedCut BladeCuts::plan_cut(const MovedBody& moved, std::size_t b,
 // The next position of a front. `run`: where the edge is; `half`: the map at half the time of the
 // cut; `anchor`: of the front.
 BladeCuts::Advance BladeCuts::plan_advance(const EdgeFront& front, std::span<const EdgePoint> run, const MapAt& half,
-                                           const Blade& blade, const FrontAnchor& anchor) const {
+                                           const Blade& blade, const FrontAnchor& anchor, const Solid& solid) const {
   Advance a;
   const MappedPlaces places(body_);
   std::vector<Vec3> mapped;
@@ -136,7 +127,7 @@ BladeCuts::Advance BladeCuts::plan_advance(const EdgeFront& front, std::span<con
     a.to.push_back(anchor.corrected(p.at, p.material, p.spacing));
     a.spacing.push_back(p.spacing);
   }
-  if (blade.resistance > 0) stay_behind(a.edge.front, a.spacing, a.to);
+  if (blade.resistance > 0) stay_behind(body_, solid, blade.resistance, {.edge = a.edge, .run = run}, a.to);
   a.retreating = hold_retreating(body_.surface, a.edge.front, a.spacing, a.to);
   cross_first(body_.surface, a.edge.front, a.spacing, a.to);
   const std::vector<Vec3> resolved = places.resolved(a.to);

@@ -62,7 +62,7 @@ class BladeCuts {
                                                double before);
   PlannedCut plan_cut(const MovedBody& moved, std::size_t blade, int k, int cuts);
   Advance plan_advance(const EdgeFront& front, std::span<const EdgePoint> run, const MapAt& half, const Blade& blade,
-                       const FrontAnchor& anchor) const;
+                       const FrontAnchor& anchor, const Solid& solid) const;
   void begin(Advance& advance, FrameStats& stats);
   void make_cut(std::size_t blade, PlannedCut plan, FrameStats& stats);
 

@@ -25,6 +25,7 @@ struct EdgePoint {
   double at = 0;  ///< edge parameter: i + t lies between the blade's points i and i + 1
   Vec3 material;
   double spacing = 0;  ///< of the nodes there, model units
+  NodeId node;         ///< the nearest in the world; invalid: none is near
 };
 
 /// A new front at the given points, at least two. `crack`: number of the crack that it makes, > 0;

@@ -3,9 +3,15 @@
 #include "simulation/edge_resistance.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
+#include "body/locate.h"
+#include "geometry/distance.h"
 #include "mechanics/solver/solid_discretisation.h"
 #include "simulation/edge_retreat.h"
+#include "simulation/existing_cuts.h"
 
 namespace geo {
 namespace {
@@ -49,7 +55,102 @@ SurfaceVertexId surface_vertex_at(const Complex& surface, VertexId id, std::int3
   return {};
 }
 
+bool lies_below_skin(const Complex& surface, const Vec3& place, double depth) {
+  return is_inside(surface, place) && distance_from_crack(surface, 0, place, 2 * depth) > depth;
+}
+
+// The place of the skin that a place in air is over, within a node spacing: its nearest place, if
+// the way there is along its normal, to 45 degrees.
+std::optional<SurfacePoint> skin_below(const Body& body, const Vec3& place) {
+  std::vector<FaceId> near;
+  body.surface.faces_near(Box3{place, place}.grown(body.finest_spacing), near);
+  std::optional<SurfacePoint> result;
+  double least = body.finest_spacing;
+  for (const FaceId f : near) {
+    if (body.surface.face(f).crack != 0) continue;
+    const auto [a, b, c] = body.surface.corners(f);
+    const Vec3 on = closest_point_on_triangle(place, a, b, c), normal = (b - a).cross(c - a).normalized();
+    const double distance = (place - on).norm();
+    if (distance >= least || normal.dot(place - on) < std::sqrt(0.5) * distance) continue;
+    least = distance;
+    const Vec3 weight = barycentric(on, a, b, c);
+    SurfacePoint& point = result.emplace(SurfacePoint{.vertex = {}, .weight = {}, .size = 3});
+    for (int k = 0; k < 3; ++k) {
+      point.vertex[k] = static_cast<std::uint32_t>(body.surface.surface_vertex({f, 0}, k).index());
+      point.weight[k] = weight[k];
+    }
+  }
+  return result;
+}
+
+// The nodes that carry a place of the surface, each once, with weights of sum 1 by their distances
+// (1 − q²)³, q: in 1.5 support radii. Those of Eq. 1 have gradients, and a force on a line that acts
+// through them folds soft material between the nodes. Empty where no node is that near.
+std::vector<NodeWeight> carriers(const SurfaceWeights& weights, const SurfacePoint& on, const NodeSet& nodes) {
+  Vec3 place = Vec3::Zero();
+  std::vector<std::uint32_t> near;
+  for (int k = 0; k < on.size; ++k) {
+    place += on.weight[k] * weights.rest(on.vertex[k]);
+    for (const NodeWeight& e : weights.stencil(on.vertex[k])) near.push_back(e.node);
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  std::vector<NodeWeight> result;
+  double sum = 0;
+  for (const std::uint32_t n : near) {
+    const double q = (nodes.position[n] - place).norm() / (1.5 * nodes.radius[n]);
+    if (q >= 1) continue;
+    result.push_back({n, std::pow(1 - q * q, 3)});
+    sum += result.back().weight;
+  }
+  for (NodeWeight& e : result) e.weight /= sum;
+  return result;
+}
+
+// Longest part of a front in air that is judged by its middle, in node spacings.
+constexpr double longest_part = 0.5;
+
+int parts_of(double length, double spacing) {
+  return std::max(1, static_cast<int>(std::ceil(length / (longest_part * spacing))));
+}
+
+// Whether a front at these places would be in the material, in the middle of a part.
+bool any_inside(const Complex& surface, const FrontBehindEdge& front, std::span<const Vec3> places) {
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    const double spacing = nearest(front.run, front.edge.at[i]).spacing;
+    const int parts = parts_of((places[i + 1] - places[i]).norm(), spacing);
+    for (int k = 0; k < parts; ++k)
+      if (is_inside(surface, places[i] + (k + 0.5) / parts * (places[i + 1] - places[i]))) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+double edge_lead(double resistance, double young, double spacing) {
+  return std::clamp(4 * resistance / young, resolved_by_front * spacing, 0.5 * spacing);
+}
+
+void stay_behind(const Body& body, const Solid& solid, double resistance, const FrontBehindEdge& front,
+                 std::vector<Vec3>& to) {
+  constexpr double shallowest_entry = 2 * resolved_by_front;  // a front is half as uneven
+  const auto& points = front.edge.front.points;
+  const bool is_in_air = !has_contact(front.edge.front);
+  if (is_in_air && !any_inside(body.surface, front, to)) return;
+  bool enters = !is_in_air;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    const EdgePoint& p = nearest(front.run, front.edge.at[i]);
+    const Vec3& from = points[i].position;
+    const double young =
+        p.node.valid() ? solid.materials().of(p.node.index()).young : std::numeric_limits<double>::infinity();
+    const double way = (to[i] - from).norm(), lead = edge_lead(resistance, young, p.spacing);
+    const bool goes_on = way > lead + resolved_by_front * p.spacing;
+    to[i] = goes_on ? Vec3(from + (1 - lead / way) * (to[i] - from)) : from;
+    enters = enters || lies_below_skin(body.surface, to[i], shallowest_entry * p.spacing);
+  }
+  if (!enters)
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] = points[i].position;
+}
 
 // A front, its blade, and the body in a time step.
 struct EdgeResistance::FrontInStep {
@@ -59,6 +160,7 @@ struct EdgeResistance::FrontInStep {
   const Body& body;
   const SolidDiscretisation& solid;
   const State& motion;
+  double young(std::size_t node) const { return solid.materials.of(node).young; }
 };
 
 bool EdgeResistance::any_at(double time) const {
@@ -73,53 +175,98 @@ void EdgeResistance::begin_step(const TimeStep& step, const Body& body, const So
   for (std::size_t b = 0; b < scene_.blades.size(); ++b) {
     if (!(scene_.blades[b].resistance > 0) || !scene_.blades[b].active(step.begin)) continue;
     for (const EdgeFront& edge : state.fronts[b])
-      if (!edge.is_left)
-        add_front({.blade = b,
-                   .edge = edge,
-                   .step = step,
-                   .body = body,
-                   .solid = SolidDiscretisation::of(solid),
-                   .motion = state.motion});
+      if (!edge.is_left) {
+        const FrontInStep at{.blade = b,
+                             .edge = edge,
+                             .step = step,
+                             .body = body,
+                             .solid = SolidDiscretisation::of(solid),
+                             .motion = state.motion};
+        has_contact(edge.front) ? add_front(at) : add_skin_below(at);
+      }
   }
+}
+
+// A spring between a place of the surface and one on the blade, without directions or forces. It
+// begins where the surface is; in the step, its place moves as the mean of its nodes.
+EdgeResistance::Spring EdgeResistance::spring_at(const FrontInStep& at, const SurfacePoint& on,
+                                                 const Vec3& place) const {
+  const Blade& blade = scene_.blades[at.blade];
+  const std::vector<Vec3>& u = at.motion.displacement;
+  Spring s;
+  s.blade = at.blade;
+  s.nodes = carriers(*weights_, on, at.body.nodes);
+  s.node = weights_->heaviest()[on.vertex[0]];
+  s.rest = -weighted_sum(s.nodes, u);
+  for (int k = 0; k < on.size; ++k)
+    s.rest += on.weight[k] * weights_->placed(on.vertex[k], weights_->interpolate(on.vertex[k], u));
+  s.begin = blade.motion.at(at.step.begin) * place;
+  s.end = s.now = blade.motion.at(at.step.end) * place;
+  if (!s.nodes.empty()) s.lead = edge_lead(blade.resistance, at.young(s.node), at.body.nodes.spacing[s.node]);
+  return s;
 }
 
 void EdgeResistance::add_front(const FrontInStep& at) {
   const Blade& blade = scene_.blades[at.blade];
   const FrontState& front = at.edge.front;
-  const Pose begin = blade.motion.at(at.step.begin), end = blade.motion.at(at.step.end);
+  const Pose end = blade.motion.at(at.step.end);
   const std::vector<Vec3>& u = at.motion.displacement;
   for (const FrontVertex& v : vertices_of(front)) {
     const SurfaceVertexId vertex = surface_vertex_at(at.body.surface, v.id, front.crack);
-    if (!vertex.valid() || weights_->stencil(vertex.index()).empty()) continue;
+    if (!vertex.valid()) continue;
     const std::size_t next = (v.segment + 1) % front.points.size();
     const Vec3 a = place_on(blade, at.edge.at[v.segment]), b = place_on(blade, at.edge.at[next]);
     const Vec3 along = (end.rotation * (b - a)).normalized();
-    if (!along.allFinite()) continue;
-    const Vec3 place = a + v.share * (b - a), rest = weights_->placed(vertex.index(), Vec3::Zero());
-    const std::uint32_t node = weights_->heaviest()[vertex.index()];
-    Spring s{.blade = at.blade,
-             .vertex = static_cast<std::uint32_t>(vertex.index()),
-             .rest = rest,
-             .begin = begin * place,
-             .end = end * place,
-             .now = end * place,
-             .across = Mat3::Identity() - along * along.transpose(),
-             .limit = 0,
-             .lead = edge_lead * at.body.nodes.spacing[node]};
-    const Vec3 ahead = s.stretch(weights_->interpolate(vertex.index(), u));
-    const Mat3 f = Mat3::Identity() + at.solid.mls.displacement_gradient(node, u);
+    Spring s = spring_at(at, {.vertex = {static_cast<std::uint32_t>(vertex.index())}, .weight = {1}, .size = 1},
+                         a + v.share * (b - a));
+    if (!along.allFinite() || s.nodes.empty()) continue;
+    s.across = Mat3::Identity() - along * along.transpose();
+    const Vec3 ahead = s.stretch(weighted_sum(s.nodes, u));
+    const Mat3 f = Mat3::Identity() + at.solid.mls.displacement_gradient(s.node, u);
     const Vec3 in_material = f.inverse() * ahead;
     if (!(ahead.norm() > 0) || !in_material.allFinite()) continue;
     const Vec3& from = at.body.surface.point(v.id);
-    if (leads_back(at.body.surface, front, from, from + in_material, at.body.nodes.spacing[node])) continue;
+    if (leads_back(at.body.surface, front, from, from + in_material, at.body.nodes.spacing[s.node])) continue;
     // A way in the world is another one in the material, whose area counts.
     s.limit = blade.resistance * v.length * in_material.norm() / ahead.norm();
-    springs_.push_back(s);
+    springs_.push_back(std::move(s));
+  }
+}
+
+// Springs for the parts of a front in air that have skin below them.
+void EdgeResistance::add_skin_below(const FrontInStep& at) {
+  const Blade& blade = scene_.blades[at.blade];
+  const auto& points = at.edge.front.points;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Vec3 &p = points[i].position, &q = points[i + 1].position;
+    const Vec3 a = place_on(blade, at.edge.at[i]), b = place_on(blade, at.edge.at[i + 1]);
+    const double length = (q - p).norm();
+    const int parts = parts_of(length, at.body.finest_spacing);
+    for (int k = 0; k < parts; ++k) {
+      const double share = (k + 0.5) / parts;
+      const auto below = skin_below(at.body, p + share * (q - p));
+      if (!below) continue;
+      Spring s = spring_at(at, *below, a + share * (b - a));
+      if (s.nodes.empty()) continue;
+      Vec3 corner[3];
+      for (int c = 0; c < 3; ++c)
+        corner[c] = weights_->placed(below->vertex[c], weights_->interpolate(below->vertex[c], at.motion.displacement));
+      s.inward = -(corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+      s.across = s.inward * s.inward.transpose();
+      s.limit = blade.resistance * length / parts;
+      if (s.inward.allFinite()) springs_.push_back(std::move(s));
+    }
   }
 }
 
 void EdgeResistance::begin_substep(const std::vector<Vec3>& /*u*/, double /*from*/, double to) {
   for (Spring& s : springs_) s.now = s.begin + to * (s.end - s.begin);
+}
+
+// From the place of the surface at displacement d to the edge.
+Vec3 EdgeResistance::Spring::stretch(const Vec3& d) const {
+  const Vec3 ahead = across * (now - rest - d);
+  return ahead.dot(inward) < 0 ? Vec3(Vec3::Zero()) : ahead;
 }
 
 double EdgeResistance::energy(std::size_t k, const Vec3& d) const {
@@ -137,6 +284,7 @@ Potential::Derivatives EdgeResistance::derivatives(std::size_t k, const Vec3& d)
   const Spring& s = springs_[k];
   const Vec3 stretch = s.stretch(d);
   const double length = stretch.norm();
+  if (length == 0 && !s.inward.isZero(0)) return {.force = Vec3::Zero(), .hessian = Mat3::Zero()};
   Derivatives result{.force = force(s, d), .hessian = s.limit / std::max(s.lead, length) * s.across};
   if (length > s.lead) result.hessian -= s.limit / (length * length * length) * stretch * stretch.transpose();
   return result;
@@ -145,7 +293,7 @@ Potential::Derivatives EdgeResistance::derivatives(std::size_t k, const Vec3& d)
 void EdgeResistance::end_step(const std::vector<Vec3>& u, double share, FrameStats& stats) const {
   stats.blade_force.resize(scene_.blades.size(), Vec3::Zero());
   for (const Spring& s : springs_) {
-    const Vec3 on_body = force(s, weights_->interpolate(s.vertex, u));
+    const Vec3 on_body = force(s, weighted_sum(s.nodes, u));
     stats.blade_force[s.blade] -= share * on_body;
     stats.work += on_body.dot(s.end - s.begin);
   }

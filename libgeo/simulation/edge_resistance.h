@@ -1,8 +1,10 @@
 // The resistance of the material to the edges of blades: it is pushed along until it parts.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "contact/response/relative_stencil.h"
 #include "contact/surface/surface_weights.h"
 #include "kerf/body.h"
 #include "kerf/potential.h"
@@ -14,15 +16,31 @@
 
 namespace geo {
 
-/// How far the edge of a blade with a resistance is ahead of its front where it cuts, in node
-/// spacings: as near as a cut follows an edge.
-constexpr double edge_lead = resolved_by_front;
+/// How far the edge of a blade with a resistance R is ahead of its front where it cuts, model units:
+/// 4 R / E, where a spring that reaches R there is a quarter as stiff as the material: stiffer ones
+/// crumple a soft surface. At least as near as a cut follows an edge, at most half a node spacing. `young`: E,
+/// Pa, and `spacing` of the nodes there.
+double edge_lead(double resistance, double young, double spacing);
+
+/// A front, and where its edge is now.
+struct FrontBehindEdge {
+  const EdgeFront& edge;
+  std::span<const EdgePoint> run;
+};
+
+/// Keeps the next positions `to` of a front behind the edge of a blade with a resistance: by
+/// edge_lead(), and where they are, until it is a twentieth of a node spacing farther. A front that
+/// is in air follows its edge to the skin, and stays there until one of its points is to lie a tenth
+/// of a spacing deep in the material: shallower cuts are not distinguished from the skin.
+void stay_behind(const Body& body, const Solid& solid, double resistance, const FrontBehindEdge& front,
+                 std::vector<Vec3>& to);
 
 /// Springs between the edges of blades and the vertices of the fronts that they leave. A spring
 /// exerts a force on a vertex, across the edge, of at most R ℓ: R is the blade's resistance, and ℓ
-/// the length of front that belongs to the vertex. It reaches that at edge_lead, where BladeCuts
+/// the length of front that belongs to the vertex. It reaches that at edge_lead(), where BladeCuts
 /// lets the front go on: so an area A takes the work R A. An edge that goes back in its cut exerts
-/// nothing. Cutting with an energy per area: Atkins and Mai 1985.
+/// nothing. Where the front is in air, springs act on the skin below it, along its normal, once the
+/// edge is behind it: so the skin is dented before it parts. Cutting with an energy per area: Atkins and Mai 1985.
 class EdgeResistance : public Potential {
  public:
   /// Refers to the scene.
@@ -40,11 +58,11 @@ class EdgeResistance : public Potential {
 
   /// Places of the edges at share `to` of the time step.
   void begin_substep(const std::vector<Vec3>& u, double from, double to) override;
-  /// Number of vertices of fronts.
+  /// Number of springs.
   std::size_t size() const override { return springs_.size(); }
-  /// The nodes that carry the vertex.
-  Stencil stencil(std::size_t k) const override { return weights_->stencil(springs_[k].vertex); }
-  /// The nodes that carry a vertex lie in one component.
+  /// The nodes that carry the spring's place of the surface.
+  Stencil stencil(std::size_t k) const override { return springs_[k].nodes; }
+  /// The nodes that carry a face lie in one component.
   bool within_components() const override { return true; }
   /// Energy of the spring, J: ½ k s² up to its largest force, linear in the stretch s beyond.
   double energy(std::size_t k, const Vec3& d) const override;
@@ -52,18 +70,21 @@ class EdgeResistance : public Potential {
   Derivatives derivatives(std::size_t k, const Vec3& d) const override;
 
  private:
-  // A vertex of a front, and the place of the edge that belongs to it.
+  // A place of the surface, and the place of the edge that belongs to it.
   struct Spring {
-    std::size_t blade;
-    std::uint32_t vertex;
-    Vec3 rest, begin, end, now;  // of the vertex without displacement; of the edge, world
-    Mat3 across;                 // takes off the part along the edge
-    double limit, lead;          // largest force, N; stretch where it is reached, model units
-    /// From the vertex at displacement d to the edge, across the edge.
-    Vec3 stretch(const Vec3& d) const { return across * (now - rest - d); }
+    std::size_t blade = 0;
+    std::vector<NodeWeight> nodes;  // that carry the place of the surface
+    std::uint32_t node = 0;         // the nearest of these
+    Vec3 rest, begin, end, now;     // of the surface without displacement; of the edge, world
+    Mat3 across = Mat3::Zero();     // takes off the part along the edge; along the skin
+    Vec3 inward = Vec3::Zero();     // of the skin: only this way; zero: both
+    double limit = 0, lead = 0;     // largest force, N; stretch where it is reached, model units
+    Vec3 stretch(const Vec3& d) const;
   };
   struct FrontInStep;
+  Spring spring_at(const FrontInStep& at, const SurfacePoint& on, const Vec3& place) const;
   void add_front(const FrontInStep& at);
+  void add_skin_below(const FrontInStep& at);
   Vec3 force(const Spring& s, const Vec3& d) const;
 
   const Scene& scene_;

@@ -33,8 +33,9 @@ struct Sample {
   bool is_in_cut = false;  // one that exists, and no front there can go on
   bool is_held = false;    // by a front that can go on
   double spacing = 0;
+  NodeId node;                                           // the nearest
   double gap = std::numeric_limits<double>::infinity();  // distance to the nearest node, less its support radius
-  EdgePoint point() const { return {.at = at, .material = material, .spacing = spacing}; }
+  EdgePoint point() const { return {.at = at, .material = material, .spacing = spacing, .node = node}; }
 };
 
 // Samples a part of the edge. Not shared between threads: it caches deformed surface vertices.
@@ -59,6 +60,7 @@ class EdgeSampler {
     s.place = place_.at(place.position, pose_.rotation * direction_on(blade_, parameter));
     s.material = place_.outside(s.place);
     s.within = place.in_support;
+    s.node = place.nearest;
     if (place.nearest.valid()) {
       s.spacing = body_.nodes.spacing[place.nearest.index()];
       s.gap =

@@ -1,7 +1,9 @@
 // § 6.5: masters by visibility edges, slaves breadth-first along the derived surface, which no
 // crack connects.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "body/binding.h"
 #include "body/incremental_cache.h"
@@ -99,6 +101,22 @@ SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
 
 double longest_reach(const Body& body) { return GraphStorage::of(body.graph).plain_unit() * 0x1p26; }
 
+bool is_on_border(const Complex& k, SurfaceVertexId v) {
+  const VertexId site = k.site(v);
+  for (const FaceId f : k.faces_at(site)) {
+    if (k.face(f).crack == 0) continue;
+    const auto& corners = k.face(f).v;
+    const int c = static_cast<int>(std::find(corners.begin(), corners.end(), site) - corners.begin());
+    if (k.surface_vertex({f, 0}, c) == v && k.surface_vertex({f, 1}, c) == v) return true;
+  }
+  return false;
+}
+
+std::uint32_t step_from(const Complex& k, SurfaceVertexId v) {
+  constexpr std::uint32_t past_border = 1u << 20;  // deeper than trees are, and a sum of thousands fits
+  return is_on_border(k, v) ? past_border : 1;
+}
+
 NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v) {
   const Vec3& q = body.surface.point(body.surface.site(v));
   std::vector<std::uint32_t> near;
@@ -142,30 +160,30 @@ Binding build_binding(const Body& body) {
   for (std::uint32_t i = 0; i < body.nodes.size(); ++i)
     if (const auto v = b.closest[i]; v.valid())
       if (auto& node = b.master_node[v.index()]; !node.valid() || nearer(NodeId(i), node, v)) node = NodeId(i);
-  std::vector<SurfaceVertexId> level, next, around;
+  // Parents and vertices that they may get, by depth. In a level the lowest parent comes first: the
+  // tree does not depend on the order in which the level was found.
+  std::map<std::uint32_t, std::vector<std::pair<SurfaceVertexId, SurfaceVertexId>>> levels;
   const auto spread = [&] {
-    while (!level.empty()) {
-      // Lowest parent first: the tree does not depend on the order in which a level was found.
+    std::vector<SurfaceVertexId> around;
+    while (!levels.empty()) {
+      const std::uint32_t depth = levels.begin()->first;
+      auto level = std::move(levels.begin()->second);
+      levels.erase(levels.begin());
       std::sort(level.begin(), level.end());
-      next.clear();
-      for (const auto v : level) {
+      for (const auto& [parent, v] : level) {
+        if (b.master[v.index()].valid()) continue;
+        b.master[v.index()] = parent == v ? v : b.master[parent.index()];
+        b.parent[v.index()] = parent;
         around.clear();
         k.surface_neighbors(v, around);
+        auto& below = levels[depth + step_from(k, v)];
         for (const auto w : around)
-          if (!b.master[w.index()].valid()) {
-            b.master[w.index()] = b.master[v.index()];
-            b.parent[w.index()] = v;
-            next.push_back(w);
-          }
+          if (!b.master[w.index()].valid()) below.push_back({v, w});
       }
-      level.swap(next);
     }
   };
   for (std::uint32_t v = 0; v < n; ++v)
-    if (b.master_node[v].valid()) {
-      b.master[v] = b.parent[v] = SurfaceVertexId(v);
-      level.push_back(SurfaceVertexId(v));
-    }
+    if (b.master_node[v].valid()) levels[0].push_back({SurfaceVertexId(v), SurfaceVertexId(v)});
   spread();
   // An unseen shell (a small cavity, a piece without a node) takes the nearest node of its piece,
   // else the nearest of all.
@@ -190,26 +208,64 @@ Binding build_binding(const Body& body) {
     });
     if (!node.valid()) node = carrier_of_unseen_shell(body, id, [](NodeId) { return true; });
     b.master_node[v] = node;
-    b.master[v] = b.parent[v] = id;
-    level.assign(1, id);
+    levels[0].push_back({id, id});
     spread();
   }
   return b;
 }
 
+std::array<NodeId, 2> master_nodes(const Body& body, SurfaceVertexId v) {
+  const Complex& k = body.surface;
+  const auto node_of = [&](SurfaceVertexId w) {
+    const SurfaceVertexId master = body.binding.master[w.index()];
+    return master.valid() ? body.binding.master_node[master.index()] : NodeId();
+  };
+  const NodeId own = node_of(v);
+  if (!own.valid()) return {};
+  const Vec3& x = k.point(k.site(v));
+  // The nearest node of the vertices beside v on each side of the crack, where these are two.
+  std::array<NodeId, 2> of_side;
+  std::array<double, 2> least{};
+  for (const FaceId f : k.faces_at(k.site(v))) {
+    if (k.face(f).crack == 0) continue;
+    const auto& corners = k.face(f).v;
+    const int c = static_cast<int>(std::find(corners.begin(), corners.end(), k.site(v)) - corners.begin());
+    if (k.surface_vertex({f, 0}, c) != v || k.surface_vertex({f, 1}, c) != v) continue;
+    for (const int other : {(c + 1) % 3, (c + 2) % 3}) {
+      const std::array<SurfaceVertexId, 2> w{k.surface_vertex({f, 0}, other), k.surface_vertex({f, 1}, other)};
+      if (w[0] == w[1]) continue;
+      for (std::size_t s = 0; s < 2; ++s) {
+        const NodeId node = node_of(w[s]);
+        if (!node.valid()) continue;
+        const double d = (body.nodes.position[node.index()] - x).norm();
+        if (of_side[s].valid() && (d > least[s] || (d == least[s] && of_side[s] < node))) continue;
+        of_side[s] = node;
+        least[s] = d;
+      }
+    }
+  }
+  if (of_side[0].valid() && of_side[1].valid() && of_side[0] != of_side[1]) return of_side;
+  return {own, NodeId()};
+}
+
 void carrier_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out) {
   out.clear();
-  const SurfaceVertexId master = body.binding.master[v.index()];
-  if (!master.valid()) return;
-  const NodeId m = body.binding.master_node[master.index()];
   const Vec3& x = body.surface.point(body.surface.site(v));
+  const std::array<NodeId, 2> masters = master_nodes(body, v);
   const auto add = [&](NodeId j) {
     const double d = (body.nodes.position[j.index()] - x).norm();
     if (d < body.nodes.radius[j.index()]) out.push_back({j, d});
   };
-  add(m);
-  for (const auto& n : body.graph.neighbors(body.nodes, m)) add(n.to);
-  if (out.empty()) out.push_back({m, 0.0});
+  for (const NodeId m : masters) {
+    if (!m.valid()) continue;
+    add(m);
+    for (const auto& n : body.graph.neighbors(body.nodes, m)) add(n.to);
+  }
+  if (masters[1].valid()) {
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+  }
+  if (out.empty() && masters[0].valid()) out.push_back({masters[0], 0.0});
 }
 
 }  // namespace geo

@@ -1,11 +1,13 @@
 // Parts of the binding (§ 6.5) that the build and the update share.
 //
 // Every rule depends on a vertex and its neighbours on the surface, never on an order of events.
-// Master: the closest visible vertex of some node; depth 0. Slave v: depth(v) = 1 + min depth(w)
-// over neighbours w, and its parent is the lowest w with that minimum. So an updated tree equals
-// the tree of a build from scratch.
+// Master: the closest visible vertex of some node; depth 0. Slave v: depth(v) = min depth(w) +
+// step_from(w) over neighbours w, and its parent is the lowest w with that minimum. So an updated
+// tree equals the tree of a build from scratch.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -22,6 +24,13 @@ double longest_reach(const Body& body);
 /// site, the one on the side that p sees. Invalid when there is none. Exact.
 SurfaceVertexId closest_vertex(const Complex& complex, const Vec3& p, double reach);
 
+/// Whether a surface vertex lies on the border of a crack's sheet, where its two sides join.
+bool is_on_border(const Complex& complex, SurfaceVertexId v);
+
+/// What a slave is deeper than its parent v: 1. From a border of a sheet, whose vertices belong to
+/// both sides, it is more than any way around: so a side takes nodes of its own, not of the other.
+std::uint32_t step_from(const Complex& complex, SurfaceVertexId v);
+
 /// Among nodes i with closest[i] = v, the one nearest to v (ties: the lowest id). Invalid if there
 /// is none: v is no master.
 NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId v);
@@ -29,6 +38,11 @@ NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId 
 /// The nearest accepted node to v, the lowest vertex of a shell that no node sees; invalid when
 /// there is none. `accept` limits the search to the piece of the shell.
 NodeId carrier_of_unseen_shell(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept);
+
+/// The nodes whose neighbours carry a surface vertex: that of its master. A vertex on the border of
+/// a crack's sheet belongs to both sides, and has the nearest node of the masters of each, where
+/// these differ. Invalid where there is none.
+std::array<NodeId, 2> master_nodes(const Body& body, SurfaceVertexId v);
 
 /// Nodes, ascending, and the closest surface vertex of each, as closest_vertex() finds it.
 using ClosestVertices = std::vector<std::pair<NodeId, SurfaceVertexId>>;

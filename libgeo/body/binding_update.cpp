@@ -97,6 +97,8 @@ class BindingUpdate::Impl {
     node_before_.try_emplace(v, b_.master_node[v.index()]);
     b_.master_node[v.index()] = node;
   }
+  // Of the slaves of a vertex that has a depth.
+  std::uint32_t depth_below(SurfaceVertexId parent) const { return depth_[parent.index()] + step_from(k_, parent); }
   void orphan(SurfaceVertexId root);
   void dismiss_unseen_master(SurfaceVertexId v);
   void offer(SurfaceVertexId v, std::uint32_t depth, SurfaceVertexId parent) {
@@ -262,15 +264,18 @@ void BindingUpdate::Impl::update_trees_at_changed_edges(const CrackDelta& delta)
   for (const auto v : seen) {
     const auto beside = around(v);
     const auto parent = b_.parent[v.index()], master = b_.master[v.index()];
-    if (parent.valid() && parent != v && !std::binary_search(beside.begin(), beside.end(), parent)) orphan(v);
+    // The parent is elsewhere, or has come to a border, or left it.
+    if (parent.valid() && parent != v &&
+        (!std::binary_search(beside.begin(), beside.end(), parent) || depth_[v.index()] != depth_below(parent)))
+      orphan(v);
     // An unseen shell may have joined another one.
     if (b_.master[v.index()].valid() && is_unseen_master(master)) dismiss_unseen_master(master);
   }
   orphans_.insert(orphans_.end(), delta.new_surface_vertices.begin(), delta.new_surface_vertices.end());
   for (const auto v : at)
     for (const auto w : around(v)) {
-      if (depth_[w.index()] != no_depth) offer(v, depth_[w.index()] + 1, w);
-      if (depth_[v.index()] != no_depth) offer(w, depth_[v.index()] + 1, v);
+      if (depth_[w.index()] != no_depth) offer(v, depth_below(w), w);
+      if (depth_[v.index()] != no_depth) offer(w, depth_below(v), v);
     }
 }
 
@@ -281,7 +286,7 @@ void BindingUpdate::Impl::offer_to_orphans() {
   for (const auto v : orphans_) {
     if (!k_.alive(v) || depth_[v.index()] != no_depth) continue;
     for (const auto w : around(v))
-      if (depth_[w.index()] != no_depth) offer(v, depth_[w.index()] + 1, w);
+      if (depth_[w.index()] != no_depth) offer(v, depth_below(w), w);
   }
 }
 
@@ -298,7 +303,7 @@ void BindingUpdate::Impl::grow() {
     depth_[v.index()] = depth;
     b_.parent[v.index()] = parent;
     changed.push({depth, v});
-    for (const auto w : around(v)) offer(w, depth + 1, v);
+    for (const auto w : around(v)) offer(w, depth_below(v), v);
   }
   while (!changed.empty()) {
     const auto [depth, v] = changed.top();
@@ -307,7 +312,7 @@ void BindingUpdate::Impl::grow() {
     if (depth != depth_[v.index()] || master == b_.master[v.index()]) continue;
     set_master(v, master);
     for (const auto w : around(v))
-      if (b_.parent[w.index()] == v && w != v) changed.push({depth + 1, w});
+      if (b_.parent[w.index()] == v && w != v) changed.push({depth_below(v), w});
   }
 }
 

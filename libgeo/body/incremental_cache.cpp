@@ -2,6 +2,7 @@
 // on the way get their depths. Linear in the number of vertices.
 #include "body/incremental_cache.h"
 
+#include "body/binding.h"
 #include "body/piece_labels.h"
 
 namespace geo {
@@ -27,8 +28,11 @@ void prepare_cache(Body& body) {
     for (ancestors.clear(); cache.depth[at.index()] == ~0u && b.parent[at.index()] != at; at = b.parent[at.index()])
       ancestors.push_back(at);
     if (b.parent[at.index()] == at) cache.depth[at.index()] = 0;
-    for (std::uint32_t depth = cache.depth[at.index()]; !ancestors.empty(); ancestors.pop_back())
-      cache.depth[ancestors.back().index()] = ++depth;
+    for (; !ancestors.empty(); ancestors.pop_back()) {
+      const SurfaceVertexId below = ancestors.back();
+      cache.depth[below.index()] = cache.depth[at.index()] + step_from(body.surface, at);
+      at = below;
+    }
     if (b.parent[v].value == v && !seen[v]) cache.unseen_masters.push_back(SurfaceVertexId(v));
   }
 }

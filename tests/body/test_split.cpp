@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 
 #include "base/random.h"
+#include "body/binding.h"
 #include "body/incremental_cache.h"
 #include "body/locate.h"
 #include "body/node_insertion.h"
@@ -83,6 +85,45 @@ TEST_CASE("A plane through a block separates nodes, graph and binding", "[body]"
       for (const auto& [i, d] : nodes)
         CHECK((body.nodes.position[i.index()].x() > 0.47) == (normal_up == (which == 1)));
     }
+}
+
+TEST_CASE("Each wall of a cut that ends in the material is carried by nodes of its side", "[body]") {
+  const auto [first, count] = seeds(20);
+  for (int n = 0; n < count; ++n) {
+    INFO("seed " << first + static_cast<std::uint64_t>(n));
+    std::mt19937_64 random(first + static_cast<std::uint64_t>(n));
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const double x = 0.5 + 0.1 * unit(random), depth = 0.4 + 0.1 * unit(random);
+    Body body = make_body(make_block({1, 1, 1}, 0.2), 0.12);
+    // In steps of random lengths, with uneven fronts: their triangles go to the border from everywhere.
+    const int steps = 4;
+    std::vector<Vec3> at;
+    for (int k = 0; k <= 12; ++k) at.push_back({x, -0.1 + 0.1 * k, 1.05});
+    auto front = begin_front(at, false, 1);
+    for (int s = 1; s <= steps; ++s) {
+      for (Vec3& p : at) p.z() = 1.05 - (depth + 0.05) * (s + 0.3 * unit(random)) / steps;
+      split(body, front, at);
+    }
+    CHECK(check_body(body).first_problem == "");
+    const Complex& k = body.surface;
+    double deepest = 0;  // of the border
+    for (const Vec3& p : at) deepest = std::max(deepest, p.z());
+    std::size_t checked = 0, wrong = 0;
+    for (std::uint32_t v = 0; v < k.surface_vertex_count(); ++v) {
+      const SurfaceVertexId id(v);
+      if (!k.alive(id)) continue;
+      const Side side = k.corner_of(id).first;
+      if (k.face(side.face).crack == 0 || k.point(k.site(id)).z() < deepest + 0.05) continue;
+      const auto t = k.corners(side.face);
+      const bool normal_up = (t[1] - t[0]).cross(t[2] - t[0]).x() > 0;
+      const auto [node, across] = master_nodes(body, id);
+      REQUIRE(node.valid());
+      ++checked;
+      wrong += across.valid() || (body.nodes.position[node.index()].x() > x) != (normal_up == (side.which == 1));
+    }
+    CHECK(checked > 40);
+    CHECK(wrong == 0);
+  }
 }
 
 TEST_CASE("A cut through nodes moves them off", "[body]") {

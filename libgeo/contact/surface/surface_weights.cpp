@@ -3,10 +3,12 @@
 #include "contact/surface/surface_weights.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 #include <numeric>
 
+#include "body/binding.h"
 #include "contact/surface/contact_surface.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/kernel.h"
@@ -72,6 +74,7 @@ void SurfaceWeights::rebuild(const Body& body, const Solid& solid) {
   norm_.clear();
   area_.clear();
   arms_.clear();
+  masters_.clear();
   changed_.clear();
   resolution_ = Resolution(body.surface.extent().diagonal());
   std::vector<std::uint32_t> all(body.surface.surface_vertex_count());
@@ -89,16 +92,24 @@ void SurfaceWeights::mark_changed(const Body& body, const BodyDelta& delta) {
   }
   const std::size_t n = body.surface.surface_vertex_count();
   changed_.resize(n, 0);
-  for (const auto v : delta.rebound_vertices) changed_[v.index()] = 1;
+  std::vector<SurfaceVertexId> around;
+  for (const auto v : delta.rebound_vertices) {
+    changed_[v.index()] = 1;
+    // Borders take the nodes of vertices beside them.
+    around.clear();
+    if (body.surface.alive(v)) body.surface.surface_neighbors(v, around);
+    for (const auto w : around)
+      if (is_on_border(body.surface, w)) changed_[w.index()] = 1;
+  }
   const CrackDelta& crack = delta.crack;
   for (const auto* some :
        {&crack.new_surface_vertices, &crack.touched_surface_vertices, &crack.removed_surface_vertices})
     for (const auto v : *some) changed_[v.index()] = 1;
   parallel_for(n, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const SurfaceVertexId master =
-          body.surface.alive(SurfaceVertexId(v)) ? body.binding.master[v] : SurfaceVertexId();
-      changed_[v] = changed_[v] || !master.valid() || stale_node[body.binding.master_node[master.index()].index()];
+      const std::array<NodeId, 2> of = v < masters_.size() ? masters_[v] : std::array<NodeId, 2>{};
+      changed_[v] =
+          changed_[v] || !of[0].valid() || stale_node[of[0].index()] || (of[1].valid() && stale_node[of[1].index()]);
     }
   });
 }
@@ -158,6 +169,7 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
   norm_.resize(stencils_.size(), 0);
   area_.resize(stencils_.size(), 0);
   arms_.resize(stencils_.size());
+  masters_.resize(stencils_.size());
   rest_.resize(stencils_.size(), none);
   if (!rotated_.empty()) rotated_.resize(stencils_.size(), Vec3::Zero());
   const NodalGradientOperator& mls = SolidDiscretisation::of(solid).mls;
@@ -173,10 +185,12 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
       heaviest_[v] = ~0u;
       norm_[v] = area_[v] = 0;
       arms_[v].clear();
+      masters_[v] = {};
       rest_[v] = none;
       if (!body.surface.alive(id)) continue;
       const Vec3& x = rest_[v] = body.surface.point(body.surface.site(id));
       area_[v] = vertex_area(body.surface, id);
+      masters_[v] = master_nodes(body, id);
       carrier_nodes(body, id, bound);
       if (bound.empty()) continue;
       // Kernel weights replace distances. If all vanish, the first node carries the vertex.

@@ -1,6 +1,7 @@
 // Equation 1 as a sparse linear map: displacements of surface vertices from those of nodes.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -75,9 +76,10 @@ class SurfaceWeights {
   std::vector<std::uint32_t> heaviest_;
   std::vector<Vec3> rest_;  // per vertex; not a number: dead
   std::vector<double> area_, norm_;
-  std::vector<std::vector<Arm>> arms_;  // per vertex: to nodes whose rotation has a share in its motion
-  std::vector<Vec3> rotated_;           // per vertex; empty: zero
-  std::vector<std::uint8_t> changed_;   // per vertex: 1 if marked; empty: none is
+  std::vector<std::array<NodeId, 2>> masters_;  // per vertex, of master_nodes(); invalid: dead
+  std::vector<std::vector<Arm>> arms_;          // per vertex: to nodes whose rotation has a share in its motion
+  std::vector<Vec3> rotated_;                   // per vertex; empty: zero
+  std::vector<std::uint8_t> changed_;           // per vertex: 1 if marked; empty: none is
 };
 
 }  // namespace geo

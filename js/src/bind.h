@@ -25,10 +25,21 @@ struct Mesh {
 };
 using MeshHandle = std::shared_ptr<Mesh>;
 
+struct Front;
 /// A cracked model, with the surface that it was made of.
 struct Complex {
   geo::Complex complex;
   MeshHandle model;
+  std::weak_ptr<Front> moved = {};  ///< the front that made the last edit
+  geo::FrontState before = {};      ///< of `moved`, before that edit
+  std::uint64_t changed = 0;        ///< how often all of it was changed: fronts have ended
+  bool changed_whole = false;       ///< by the last edit, of many steps: it cannot be taken back
+
+  /// The last edit was made by no front.
+  void forget_front() {
+    moved.reset();
+    changed_whole = false;
+  }
 };
 using ComplexHandle = std::shared_ptr<Complex>;
 
@@ -110,6 +121,9 @@ void take(const val& options, const char* name, int& out, int least, int most);
 void take_seed(const val& options, const char* name, std::uint64_t& out);
 /// Whether the object has this key with a value.
 bool has(const val& options, const char* name);
+
+/// The faces that an edit removed and made: {removedFaces, newFaces, newCrackFaces}.
+val changes(const geo::CrackDelta& delta);
 
 /// Tolerances of cracks: snap, snapEdges, faceOffset, clearance, jitter, attempts, seed.
 geo::CrackOptions crack_options(const val& options);

@@ -167,27 +167,63 @@ val save(const MeshHandle& m, const std::string& format) {
   });
 }
 
-val hulls(const MeshHandle& m, int count, int corners) {
+val hulls(const MeshHandle& m, const val& options) {
   return guarded([&] {
+    int parts = 1, corners = 64;
+    take(options, "parts", parts, 1, 1000);
+    take(options, "corners", corners, 4, 100000);
     val result = val::array();
     for (geo::TriangleMesh& hull :
-         geo::convex_decomposition(m->mesh, static_cast<std::size_t>(count), static_cast<std::size_t>(corners)))
+         geo::convex_decomposition(m->mesh, static_cast<std::size_t>(parts), static_cast<std::size_t>(corners)))
       append(result, val(handle(std::move(hull))));
     return result;
   });
 }
 
-// Shapes: by name, with a size of the triangles.
-val shape(const std::string& name, const val& size, double fineness, const std::string& letter) {
+// ---- Refinement, shapes
+
+// Triangles, as of geo::refined(). Solids of so many need more than the 2 GB of a module's memory.
+constexpr double most_triangles = 2e7;
+
+val refined(const MeshHandle& m, const val& longest) {
   return guarded([&] {
-    const int n = static_cast<int>(fineness);
-    if (name == "block") return handle(geo::make_block(point_from(size, "size"), fineness));
-    if (name == "sphere") return handle(geo::make_sphere(n));
-    if (name == "pumpkin") return handle(geo::make_pumpkin(n));
-    if (name == "apple") return handle(geo::make_apple(n));
-    if (name == "polyp") return handle(geo::make_polyp(n));
-    if (letter.size() != 1) throw geo::InputError("letter: give one capital letter");
-    return handle(geo::make_letter(letter[0], size[0].as<double>(), n));
+    const double edge = longest.isNumber() ? longest.as<double>() : 0;
+    if (!(edge > 0)) throw geo::InputError("longest: give a length above 0");
+    if (m->mesh.two_sided()) throw geo::InputError("the surface has cracks, and is not refined; refine the model");
+    return handle(geo::refined(m->mesh, edge));
+  });
+}
+
+geo::TriangleMesh block(const geo::Vec3& size, const val& options) {
+  double edge = 0.25;
+  take(options, "edge", edge, 1e-60, 1e60);
+  const geo::Vec3 cells = (size / edge).cwiseMax(1);
+  if (4 * (cells.x() * cells.y() + cells.y() * cells.z() + cells.z() * cells.x()) > most_triangles)
+    throw geo::InputError("edge: the block would have more than 20 million triangles; give a longer edge");
+  return geo::make_block(size, edge);
+}
+
+geo::TriangleMesh letter(const val& options) {
+  const auto name = options["letter"].isString() ? options["letter"].as<std::string>() : std::string();
+  if (name.size() != 1) throw geo::InputError("letter: give one capital letter");
+  int resolution = 12;
+  double depth = 0.2;
+  take(options, "resolution", resolution, 12, 1000);
+  take(options, "depth", depth, 1e-6, 1e6);
+  return geo::make_letter(name[0], depth, resolution);
+}
+
+// A shape by its name: {size, edge}, {letter, depth, resolution} or {frequency}.
+val shape(const std::string& name, const val& options) {
+  return guarded([&] {
+    if (name == "block") return handle(block(point_from(options["size"], "size"), options));
+    if (name == "letter") return handle(letter(options));
+    int frequency = 16;
+    take(options, "frequency", frequency, 1, 1000);
+    if (name == "sphere") return handle(geo::make_sphere(frequency));
+    if (name == "pumpkin") return handle(geo::make_pumpkin(frequency));
+    if (name == "apple") return handle(geo::make_apple(frequency));
+    return handle(geo::make_polyp(frequency));
   });
 }
 
@@ -207,6 +243,7 @@ EMSCRIPTEN_BINDINGS(kerf_mesh) {
   emscripten::function("load", &load);
   emscripten::function("save", &save);
   emscripten::function("hulls", &hulls);
+  emscripten::function("refined", &refined);
   emscripten::function("shape", &shape);
   emscripten::function("usedBytes", &used_bytes);
 }

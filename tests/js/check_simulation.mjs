@@ -56,4 +56,6 @@ const before = await run();
 const after = await run();
 assert.ok(after - before < 4096, `${after - before} bytes are left`);
 await assert.rejects(k.simulation("[body]\nmesh = 1\n", {}), { name: "InputError" });
+await assert.rejects(k.simulation(7), { name: "InputError", message: /TOML/ });
+await assert.rejects(k.simulation("", { model: 1 }), { name: "InputError", message: /models, / });
 console.log("simulation: a blade parts a block");

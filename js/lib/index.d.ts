@@ -315,7 +315,17 @@ export interface Simulation extends Owner {
   readonly pieceCount: number;
   step(options?: { progress?: Progress }): FrameStats;
   run(each?: (run: Simulation, frame: FrameStats) => boolean | void): this;
-  surface(): { vertices: Float64Array; faces: Uint32Array; patch: Int32Array; site: Uint32Array };
+  /** The deformed surface. Attributes are those of the model where the scene has one body; new faces have the group "crack". */
+  surface(): {
+    vertices: Float64Array;
+    faces: Uint32Array;
+    patch: Int32Array;
+    site: Uint32Array;
+    uv: Float64Array | undefined;
+    colors: Float64Array | undefined;
+    groups: Int32Array | undefined;
+    groupNames: string[];
+  };
   save(format: "kerf" | "ply"): Uint8Array;
   blade(index: number): Moved;
   grip(index: number): Moved;

@@ -49,7 +49,7 @@ export async function begin(scene, given, kerf) {
       while (this.frame < this.frames && each(this, this.step()) !== false);
       return this;
     }
-    /** The deformed surface: vertices, faces, patch, site. */
+    /** The deformed surface: vertices, faces, patch, site; of one body, uv, colors, groups and groupNames, too. */
     surface() { return call("surface", this.handle); }
     save(format) { return call("saveRun", this.handle, format); }
     blade(index) { return new Moved(this, "blade", index); }
@@ -76,7 +76,8 @@ export async function begin(scene, given, kerf) {
 
   const meshes = (Array.isArray(models) ? models : [models]).map((mesh) => {
     if (!(mesh instanceof Mesh)) throw wrong("models: give a Mesh, or a list of these");
-    return { vertices: mesh.vertices, faces: mesh.faces };
+    const { vertices, faces, uv, colors, groups, groupNames } = mesh;
+    return { vertices, faces, uv, colors, groups, groupNames };
   });
   const overrides = Object.entries(set).map(([key, value]) => [key, toml(value)]);
   return new Simulation(withProgress(progress, (report) => call("beginRun", scene, meshes, overrides, report)));

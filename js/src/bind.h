@@ -110,6 +110,18 @@ geo::Vec3 point_from(const val& array, const std::string& name);
 /// The bytes of a Uint8Array.
 std::string text_from(const val& bytes);
 
+/// Throws InputError where a mesh is no solid: why, and what makes one of it.
+void demand_solid(const geo::TriangleMesh& mesh);
+
+// ---- Attributes
+
+/// Sets the attributes of a mesh from an object with uv, normals, colors (Float64Array, a row for each
+/// vertex or for each corner of each face), groups (Int32Array) and groupNames; all may be absent.
+/// Throws InputError for a wrong number of them.
+void read_attributes(const val& given, geo::TriangleMesh& mesh);
+/// An attribute by that name as an array; undefined: there is none.
+val attribute_array(const geo::Attributes& attributes, const std::string& name);
+
 // ---- Options: an object whose absent keys keep the defaults
 
 /// Sets `out` where the object has a number of this name. Throws InputError where it is not finite

@@ -96,7 +96,7 @@ geo::Complex complex_of(const geo::TriangleMesh& mesh) {
 
 val make_complex(const MeshHandle& model) {
   return guarded([&] {
-    geo::require_solid(model->mesh);
+    demand_solid(model->mesh);
     return std::make_shared<Complex>(Complex{complex_of(model->mesh), model});
   });
 }

@@ -181,7 +181,7 @@ const tests = {
   "wrong input is an error with a sentence"() {
     const fails = (work, name, words) => assert.throws(work, (error) => error instanceof k.KerfError && error.name === name && words.test(error.message));
     const cube = k.shapes.block([1, 1, 1]);
-    fails(() => new k.Solid(cube.vertices, cube.faces.subarray(3)), "InputError", /open|hole/);
+    fails(() => new k.Solid(cube.vertices, cube.faces.subarray(3)), "InputError", /open.*Solid\.repaired/);
     fails(() => new k.Mesh([0, 0], [0, 0, 0]), "InputError", /three numbers/);
     fails(() => new k.Mesh([0, 0, NaN], [[0, 0, 0]]), "InputError", /finite/);
     fails(() => new k.Mesh([0, 0, 0], [[0, 1, 0]]), "InputError", /vertex 1/);
@@ -212,6 +212,8 @@ const tests = {
     fails(() => cube.refine(0), "InputError", /above 0/), fails(() => new k.Mesh([0, 0, 0], [], { uvs: [] }), "InputError", /uv, /);
     const holes = new k.Mesh(cube.vertices, cube.faces.subarray(3));
     assert.equal(holes.check().closed, false);
+    fails(() => holes.complex(), "InputError", /or try Solid\.repaired\(\)$/);
+    fails(() => new k.Breakable(holes), "InputError", /or try Solid\.repaired\(\)$/);
     const mended = k.Solid.repaired(holes);
     near(mended.volume, 1);
     mended.delete(), holes.delete(), cube.delete();

@@ -31,6 +31,20 @@ threading.Thread(target=server.serve_forever, daemon=True).start()
 address = f"http://127.0.0.1:{server.server_port}/"
 
 
+class Tab(Hand):
+    """A hand at a page whose program runs in a worker of the tab."""
+
+    def wait(self, condition, seconds=60):
+        """Until an expression of the page is true, for so many seconds of the worker's processor: they do not count while the machine
+        stands still, or others use it. A worker that does nothing is waited for ten times as long."""
+        before, end = worker_seconds(self), time.monotonic() + 10 * seconds
+        while not self.run(f"Boolean({condition})"):
+            used = worker_seconds(self) - before
+            assert used < seconds and time.monotonic() < end, \
+                f"not after {used:.0f} s of the worker: {condition}; {self.run('JSON.stringify(live.stats) + $(`notice`).textContent')}"
+            time.sleep(0.05)
+
+
 def middle(hand):
     """Where the middle of the body is on the screen."""
     return hand.place([(a + b) / 2 for a, b in zip(*hand.run("live.told.box"))])
@@ -303,7 +317,7 @@ def measure(hand):
         print(f"{name}, {query[7:]} nodes: whole {whole}; in {pieces} pieces {rate(hand)}", flush=True)
 
 
-hand = Hand(640, 560)
+hand = Tab(640, 560)
 try:
     with tempfile.TemporaryDirectory() as work:
         os.chdir(work)

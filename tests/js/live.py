@@ -44,6 +44,11 @@ class Tab(Hand):
                 f"not after {used:.0f} s of the worker: {condition}; {self.run('JSON.stringify(live.stats) + $(`notice`).textContent')}"
             time.sleep(0.05)
 
+    def press(self, id):
+        """A click on a button, which the page may have to enable first: a click before it is lost."""
+        self.wait(f"!document.querySelector({id!r}).disabled")
+        self.button(id)
+
 
 def middle(hand):
     """Where the middle of the body is on the screen."""
@@ -205,7 +210,7 @@ def on_phone(hand):
     hand.run("resetView()")
     pieces = break_here(hand, 1, lambda x, y: tap(hand, x, y))
     check(f"a tap makes {pieces} pieces of the box", pieces > 3)
-    hand.button("#undo")
+    hand.press("#undo")
     hand.wait("live.stats.undo === 0 && live.stats.pieces === 1")
     x, y = middle(hand)
     knife = hand.run("(() => { const r = document.querySelector('[data-tool=knife]').getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2]; })()")
@@ -249,9 +254,9 @@ def use(hand):
     check(f"{before} pieces are {pieces} after a break", pieces > before + 2)
     check_replayed(hand)
     check("no .glb of a broken bear", saved(hand, "glb")[:4] == b"glTF")
-    hand.button("#undo")
+    hand.press("#undo")
     hand.wait(f"live.stats.undo === 3 && live.stats.blows === 0 && live.stats.pieces === {before}")
-    hand.button("#redo")
+    hand.press("#redo")
     hand.wait(f"live.stats.undo === 4 && live.stats.blows === 1 && live.stats.pieces === {pieces}")
 
     with open("box.glb", "wb") as file:

@@ -5,7 +5,7 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
   libhwy-dev libnanoflann-dev libbullet-dev libcgal-demo python3 lowdown doxygen"
 test_packages="universal-ctags clang-format chromium snakemake ffmpeg python3-numpy python3-vtk9 assimp-utils zsh blender xvfb xauth
   python3-dev pybind11-dev mypy python3-pip python3-venv python3-scipy python3-tqdm python3-matplotlib python3-sphinx
-  python3-open3d python3-torch python3-meshio emscripten godot3-server node-typescript"
+  python3-open3d python3-torch python3-meshio emscripten godot3-server node-typescript esbuild"
 # Readers of assets come from npm. An installation of npm that is not Debian's serves, too.
 command -v npm >/dev/null || test_packages="$test_packages nodejs npm"
 

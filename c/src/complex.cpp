@@ -15,7 +15,7 @@ namespace kerf_c {
 namespace {
 
 geo::Complex complex_of(const geo::TriangleMesh& mesh) {
-  geo::require_solid(mesh);
+  of_solid([&] { geo::require_solid(mesh); });
   return mesh.two_sided() ? geo::Complex::from_two_sided(mesh) : geo::Complex::from_skin(mesh);
 }
 

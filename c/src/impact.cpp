@@ -59,7 +59,7 @@ kerf_status kerf_solid_create(kerf_mesh mesh, kerf_solid* solid) {
   return call([&] {
     NewHandle out(solid, "solid");
     const Reading<MeshObject> use(mesh);
-    out.set(std::make_shared<SolidObject>(geo::Breakable(use->mesh)));
+    out.set(std::make_shared<SolidObject>(of_solid([&] { return geo::Breakable(use->mesh); })));
   });
 }
 

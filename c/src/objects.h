@@ -10,6 +10,7 @@
 #include "kerf.h"
 #include "kerf/complex.h"
 #include "kerf/crack.h"
+#include "kerf/error.h"
 #include "kerf/export.h"
 #include "kerf/mesh.h"
 #include "kerf/score.h"
@@ -35,6 +36,17 @@ struct MeshObject : Object {
   const geo::TriangleMesh& mesh;
   std::vector<const char*> group_names;  ///< of mesh.attributes
 };
+
+/// The result of a call that needs a solid. Where it throws InputError, the message names the
+/// function that makes one.
+template <class Call>
+auto of_solid(const Call& call) {
+  try {
+    return call();
+  } catch (const geo::InputError& e) {
+    throw geo::InputError(std::string(e.what()) + ", or try kerf_mesh_repaired()");
+  }
+}
 
 struct FrontObject;
 

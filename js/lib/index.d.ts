@@ -137,6 +137,8 @@ export class Mesh {
   fracture(pieces?: number, options?: FractureOptions): Piece[];
   /** Breaks it by a blow of an energy, J; a Breakable is faster for a second one. */
   strike(point: ArrayLike<number>, energy: number, options?: StrikeOptions): Breaking;
+  /** The same shape with edges of at most `longest`: attributes are interpolated. */
+  refine(longest: number): this;
   /** Convex parts. */
   decomposition(options?: { parts?: number; corners?: number }): Mesh[];
 }
@@ -209,7 +211,16 @@ export class Complex {
   crack(what: Crack | ReadonlyArray<Crack>, options?: CrackOptions): this;
   insert(sheet: Score | Mesh | Plane, options?: CrackOptions): CrackDelta;
   front(points: Rows, options?: { closed?: boolean }): FrontState;
+  /** Takes the last edit back; the front that made it goes back, too. */
   undo(): void;
+  /** Heals pieces below a volume to their neighbours. This and the next three end the fronts of the complex. */
+  joinSmallPieces(least: number): this;
+  /** Improves faces with a smaller angle than `angle` degrees. This and the next two cannot be undone; one that is stopped changes nothing. */
+  remesh(options?: { angle?: number; deviation?: number; progress?: Progress }): CrackDelta;
+  /** Displaces the inner vertices of cracks by noise; lengths are fractions of the diagonal. Volumes of pieces keep their sum. */
+  roughen(options?: { amplitude?: number; frequency?: number; octaves?: number; seed?: number; progress?: Progress }): CrackDelta;
+  /** Collapses edges where the surface moves by at most `deviation`, a fraction of the diagonal, until `faces` are left. */
+  decimate(options?: { deviation?: number; faces?: number; progress?: Progress }): CrackDelta;
   pieces(options?: PieceOptions): Piece[];
   hierarchy(levels: number): { of: Uint32Array; volume: Float64Array }[];
   save(format: "glb" | "usda" | "ply" | "obj" | "stl" | "off", options?: { corners?: number; parts?: number; tile?: number; zUp?: boolean }): Uint8Array;
@@ -304,7 +315,17 @@ export interface Simulation extends Owner {
   readonly pieceCount: number;
   step(options?: { progress?: Progress }): FrameStats;
   run(each?: (run: Simulation, frame: FrameStats) => boolean | void): this;
-  surface(): { vertices: Float64Array; faces: Uint32Array; patch: Int32Array; site: Uint32Array };
+  /** The deformed surface. Attributes are those of the model where the scene has one body; new faces have the group "crack". */
+  surface(): {
+    vertices: Float64Array;
+    faces: Uint32Array;
+    patch: Int32Array;
+    site: Uint32Array;
+    uv: Float64Array | undefined;
+    colors: Float64Array | undefined;
+    groups: Int32Array | undefined;
+    groupNames: string[];
+  };
   save(format: "kerf" | "ply"): Uint8Array;
   blade(index: number): Moved;
   grip(index: number): Moved;

@@ -1,7 +1,8 @@
 // Kerf for JavaScript: breaks and cuts solids. `const k = await kerf()`, then names as in Python.
 import makeCore from "./kerf-core.js";
-import { started } from "./load.js";
+import { once } from "./load.js";
 
+const started = once(makeCore);
 let core = null;  // the module of WebAssembly, once it is loaded
 
 // What a call failed with; `name` is InputError, GeometryError, Interrupted, RangeError or Error. */
@@ -19,9 +20,33 @@ export function taken(result) {
 }
 const call = (name, ...given) => taken(core[name](...given));
 
+// ---- Arguments
+
+export const wrong = (message) => new KerfError("InputError", message);
+// An object whose class is one of these.
+export function kind(given, name, words, ...classes) {
+  if (!classes.some((one) => given instanceof one)) throw wrong(`${name}: give ${words}`);
+  return given;
+}
+// Options whose names are known.
+export function known(given, names, call) {
+  for (const name of Object.keys(given ?? {}))
+    if (!names.includes(name)) throw wrong(`${call}: there is no option '${name}'; there are ${names.join(", ")}`);
+  return given ?? {};
+}
+const names = {
+  crack: ["snap", "snapEdges", "faceOffset", "clearance", "jitter", "attempts", "seed"],
+  pieces: ["hulls", "corners", "parts", "tile"],
+  pattern: ["pattern", "attempts", "seed", "depth", "jagged", "frequency", "octaves", "edge", "axis", "impact", "cluster", "grain", "density", "image",
+    "chips", "chipSize", "edgeDetail", "edgeWidth", "progress"],
+  strike: ["direction", "milliseconds", "toughness", "maxPieces", "grading", "elongation", "hullParts", "hullCorners", "seed", "guard"],
+};
+const ofCracks = [...names.crack, ...names.pieces], ofPatterns = [...names.pattern, ...names.pieces], ofScores = ["pieces", ...ofPatterns];
+
 // Calls with a function that hears of progress. It may stop the call by false, or by an error, which then ends the call.
 function withProgress(progress, work) {
-  if (progress === undefined) return work(undefined);
+  if (progress === undefined || progress === null) return work(undefined);
+  if (typeof progress !== "function") throw wrong("progress: give a function of phase, done and total");
   let problem = null;
   const report = (phase, done, total) => {
     try {
@@ -51,7 +76,7 @@ export class Owner {
   }
   /** The object in the module. */
   get handle() {
-    if (this.#handle === null) throw new KerfError("InputError", `this ${this.constructor.name} was deleted`);
+    if (this.#handle === null) throw wrong(`this ${this.constructor.name} was deleted`);
     return this.#handle;
   }
   /** Frees its memory. */
@@ -71,13 +96,13 @@ export function numbers(kind, given, name) {
   if (given instanceof kind) return given;
   if (ArrayBuffer.isView(given) && !(given instanceof DataView)) return kind.from(given);
   if (Array.isArray(given)) return kind.from(given.length > 0 && typeof given[0] === "object" ? given.flatMap((row) => [...row]) : given);
-  throw new KerfError("InputError", `${name}: give a typed array, or an array of numbers or rows`);
+  throw wrong(`${name}: give a typed array, or an array of numbers or rows`);
 }
 const rows = (given, name) => numbers(Float64Array, given, name);
 const whole = (given, name) => {
   const list = numbers(Float64Array, given, name);
-  const wrong = list.findIndex((x) => !Number.isInteger(x) || x < 0 || x > 0xffffffff);
-  if (wrong >= 0) throw new KerfError("InputError", `${name}: ${list[wrong]} is no index`);
+  const at = list.findIndex((x) => !Number.isInteger(x) || x < 0 || x > 0xffffffff);
+  if (at >= 0) throw wrong(`${name}: ${list[at]} is no index`);
   return Uint32Array.from(list);
 };
 const indices = (given, name) => (given instanceof Uint32Array ? given : whole(given, name));
@@ -114,15 +139,20 @@ export class Mesh extends Owner {
   /** Metres of one unit, or undefined. */
   get unit() { return this.#measured.unit || undefined; }
   check() { return call("checkMesh", this.handle); }
-  save(format) { return call("save", this.handle, format); }
+  save(format) { return call("save", this.handle, String(format)); }
   /** Convex parts. */
-  decomposition({ parts = 1, corners = 64 } = {}) { return call("hulls", this.handle, parts, corners).map(meshOf); }
+  decomposition(given) { return call("hulls", this.handle, known(given, ["parts", "corners"], "decomposition")).map(meshOf); }
+  /** The same shape with edges of at most `longest`. */
+  refine(longest) {
+    const made = meshOf(call("refined", this.handle, longest));
+    return this instanceof Solid ? solidOf(made) : made;
+  }
   /** The model, to be cracked; throws where the mesh is no valid model. */
   complex() { return new Complex(new Made(call("makeComplex", this.handle))); }
-  crack(what, options = {}) {
+  crack(what, given) {
     const complex = this.complex();
     try {
-      complex.crack(what, options);
+      complex.crack(what, given);
     } catch (error) {
       complex.delete();
       throw error;
@@ -130,11 +160,11 @@ export class Mesh extends Owner {
     return complex;
   }
   /** The pieces into which a plane, sheet or front divides it. */
-  split(what, options = {}) { return piecesOf(this.crack(what, options), options); }
-  cut(what, options = {}) { return this.split(what, options); }
+  split(what, given) { return piecesOf(this.crack(what, given), given); }
+  cut(what, given) { return this.split(what, given); }
   /** The pieces of a pattern. */
-  fracture(pieces = 20, options = {}) {
-    const complex = this.complex();
+  fracture(pieces = 20, given = {}) {
+    const options = known(given, ofPatterns, "fracture"), complex = this.complex();
     try {
       const walls = score(complex, { ...options, pieces });
       complex.crack(walls);
@@ -162,8 +192,9 @@ class Made {
 }
 const meshOf = (handle) => new Mesh(new Made(handle));
 
-function makeMesh(vertices, faces, { uv, normals, colors, groups, groupNames } = {}) {
-  const given = {};
+function makeMesh(vertices, faces, attributes) {
+  if (!(attributes instanceof Mesh)) known(attributes, ["uv", "normals", "colors", "groups", "groupNames"], "Mesh");
+  const { uv, normals, colors, groups, groupNames } = attributes, given = {};
   for (const [name, value] of Object.entries({ uv, normals, colors })) if (value !== undefined) given[name] = rows(value, name);
   if (groups !== undefined) given.groups = numbers(Int32Array, groups, "groups"), given.groupNames = [...(groupNames ?? [])].map(String);
   return call("makeMesh", rows(vertices, "vertices"), indices(faces, "faces"), given);
@@ -181,7 +212,18 @@ export class Solid extends Mesh {
     }
   }
   /** Closes holes, turns shells outwards, unites parts that overlap. */
-  static repaired(mesh, options = {}) { return new Solid(new Made(call("repaired", mesh.handle, options))); }
+  static repaired(mesh, given) {
+    const { handle } = kind(mesh, "repaired", "a Mesh", Mesh);
+    return new Solid(new Made(call("repaired", handle, known(given, ["weld", "smooth"], "repaired"))));
+  }
+}
+// A mesh as a Solid; an error where it is none. The mesh is freed.
+function solidOf(mesh) {
+  try {
+    return new Solid(mesh);
+  } finally {
+    mesh.delete();
+  }
 }
 
 /** A piece of a broken model. */
@@ -201,9 +243,9 @@ export class Piece extends Mesh {
   }
 }
 // Of a complex that is then deleted.
-function piecesOf(complex, options) {
+function piecesOf(complex, given) {
   try {
-    return complex.pieces(options);
+    return complex.pieces(Object.fromEntries(Object.entries(given ?? {}).filter(([name]) => names.pieces.includes(name))));
   } finally {
     complex.delete();
   }
@@ -222,10 +264,11 @@ export const plane = (point, normal) => new Plane(point, normal);
 
 /** A polyline that moves: the points of each step. */
 export class Front {
-  constructor(steps, { closed = false } = {}) {
+  constructor(steps, given) {
+    const { closed = false } = known(given, ["closed"], "Front");
     this.steps = [...steps].map((step) => rows(step, "steps"));
     this.closed = closed;
-    if (this.steps.length < 2) throw new KerfError("InputError", "steps: give two at least");
+    if (this.steps.length < 2) throw wrong("steps: give two at least");
   }
 }
 
@@ -243,7 +286,7 @@ function brightness({ data, width, height }) {
   const pixels = width * height;
   if (data?.length === pixels) return Float32Array.from(data, (value) => value / 255);
   if (data?.length !== 4 * pixels)
-    throw new KerfError("InputError", "image: data has neither one nor four numbers for each of width x height pixels; give an ImageData");
+    throw wrong("image: data has neither one nor four numbers for each of width x height pixels; give an ImageData");
   return Float32Array.from({ length: pixels }, (_, i) => {
     const [red, green, blue, alpha] = data.subarray(4 * i, 4 * i + 4);
     return 1 - (alpha / 255) * (1 - (red + green + blue) / 765);
@@ -251,8 +294,9 @@ function brightness({ data, width, height }) {
 }
 
 /** Looks for a pattern that divides a model into as many pieces as wanted. */
-export function score(model, options = {}) {
-  const { progress, ...rest } = options;
+export function score(model, given = {}) {
+  kind(model, "score", "a Solid, a Mesh or a Complex", Mesh, Complex);
+  const { progress, ...rest } = known(given, ofScores, "score");
   if (rest.density !== undefined && typeof rest.density !== "string") rest.density = Float64Array.from(rest.density);
   if (rest.image !== undefined) rest.image = { width: rest.image.width, height: rest.image.height, brightness: brightness(rest.image) };
   if (rest.impact !== undefined) rest.impact = rows(rest.impact, "impact");
@@ -268,12 +312,14 @@ export function score(model, options = {}) {
 export class FrontState extends Owner {
   constructor(handle) { super(handle); }
   get crack() { return call("frontCrack", this.handle); }
-  advance(points, options = {}) { return call("advance", this.handle, rows(points, "points"), options); }
+  advance(points, given) { return call("advance", this.handle, rows(points, "points"), known(given, ofCracks, "advance")); }
 }
 
 /** A cracked model; it changes by its methods. */
 export class Complex extends Owner {
-  constructor(model) { super(model instanceof Made ? model.handle : call("makeComplex", model.handle)); }
+  constructor(model) {
+    super(model instanceof Made ? model.handle : call("makeComplex", kind(model, "Complex", "a Solid, or a Mesh that is a valid model", Mesh).handle));
+  }
   #last = 0;  // the largest number of a front
   copy() { return new Complex(new Made(call("copyComplex", this.handle))); }
   get faceCount() { return call("counts", this.handle).faces; }
@@ -286,7 +332,8 @@ export class Complex extends Owner {
   /** What is wrong with it, or an empty text. */
   check() { return call("checkComplex", this.handle); }
   /** Cuts along a score, mesh, plane or front, or a list of these. */
-  crack(what, options = {}) {
+  crack(what, given) {
+    const options = known(given, ofCracks, "crack");
     for (const one of Array.isArray(what) ? what : [what]) {
       if (one instanceof Front) this.#sweep(one, options);
       else this.insert(one, options);
@@ -301,10 +348,11 @@ export class Complex extends Owner {
       front.delete();
     }
   }
-  insert(sheet, options = {}) {
+  insert(sheet, given) {
+    const options = known(given, ofCracks, "insert");
     if (sheet instanceof Score) return this.insert(sheet.sheet, options);
     if (sheet instanceof Mesh) return call("insert", this.handle, sheet.handle, options);
-    if (!(sheet instanceof Plane)) throw new KerfError("InputError", "crack: give a Score, Mesh, Plane or Front");
+    if (!(sheet instanceof Plane)) throw wrong("crack: give a Score, Mesh, Plane or Front");
     const made = meshOf(call("planeSheet", this.handle, sheet.point, sheet.normal));
     try {
       return this.insert(made, options);
@@ -312,15 +360,32 @@ export class Complex extends Owner {
       made.delete();
     }
   }
-  front(points, { closed = false } = {}) {
-    const front = new FrontState(call("beginFront", this.handle, rows(points, "points"), closed, this.#last + 1));
+  front(points, given) {
+    const { closed = false } = known(given, ["closed"], "front");
+    const front = new FrontState(call("beginFront", this.handle, rows(points, "points"), Boolean(closed), this.#last + 1));
     this.#last = front.crack;
     return front;
   }
   undo() { call("undo", this.handle); }
-  pieces(options = {}) { return call("pieces", this.handle, options).map((told, index) => new Piece({ ...told, index })); }
+  /** Heals pieces below a volume to their neighbours. This and the next three end the fronts of the complex. */
+  joinSmallPieces(least) {
+    call("joinSmallPieces", this.handle, least);
+    return this;
+  }
+  /** Improves thin faces; this and the next two cannot be undone. */
+  remesh(given) { return this.#edit("remesh", given, ["angle", "deviation"]); }
+  /** Displaces the inner vertices of cracks by noise. */
+  roughen(given) { return this.#edit("roughen", given, ["amplitude", "frequency", "octaves", "seed"]); }
+  /** Collapses edges where the surface moves by little. */
+  decimate(given) { return this.#edit("decimate", given, ["deviation", "faces"]); }
+  #edit(name, given, allowed) {
+    const { progress, ...rest } = known(given, [...allowed, "progress"], name);
+    return withProgress(progress, (report) => call(name, this.handle, rest, report));
+  }
+  pieces(given) { return call("pieces", this.handle, known(given, ofCracks, "pieces")).map((told, index) => new Piece({ ...told, index })); }
   hierarchy(levels) { return call("hierarchy", this.handle, levels); }
-  save(format, options = {}) {
+  save(format, given) {
+    const options = known(given, ["corners", "parts", "tile", "zUp"], "save");
     if (format === "glb" || format === "usda") return call("savePieces", this.handle, format, options);
     const surface = this.surface();
     try {
@@ -337,15 +402,16 @@ export class Complex extends Owner {
 export class Breakable extends Owner {
   #mesh = null;
   constructor(solid) {
-    if (!(solid instanceof Made || solid instanceof Mesh)) throw new KerfError("InputError", "solid: give a Solid, or a Mesh that is a valid model");
-    super(solid instanceof Made ? solid.handle : call("makeBreakable", solid.handle));
+    const { handle } = kind(solid, "solid", "a Solid, or a Mesh that is a valid model", Made, Mesh);
+    super(solid instanceof Made ? handle : call("makeBreakable", handle));
   }
   /** Its mesh, made once: delete() of this object frees it. */
   get mesh() { return (this.#mesh ??= meshOf(call("breakableMesh", this.handle))); }
   get volume() { return call("breakableVolume", this.handle); }
-  strike(point, energy, { milliseconds = Infinity, ...options } = {}) {
-    if (options.direction !== undefined) options.direction = rows(options.direction, "direction");
-    const breaking = new Breaking(new Made(call("strike", this.handle, rows(point, "point"), energy, options)));
+  strike(point, energy, given) {
+    const { milliseconds = Infinity, ...rest } = known(given, names.strike, "strike");
+    if (rest.direction !== undefined) rest.direction = rows(rest.direction, "direction");
+    const breaking = new Breaking(new Made(call("strike", this.handle, rows(point, "point"), energy, rest)));
     try {
       breaking.advance(milliseconds);
     } catch (error) {
@@ -400,7 +466,8 @@ export class Breaking extends Owner {
 /** Reads OBJ, PLY, STL, OFF or GLB: a Solid, or a Mesh where it is no valid model. */
 export function load(bytes, format = "") {
   const data = bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : bytes;
-  if (!(data instanceof Uint8Array)) throw new KerfError("InputError", "load: give the bytes of a file, as a Uint8Array or ArrayBuffer");
+  if (!(data instanceof Uint8Array)) throw wrong("load: give the bytes of a file, as a Uint8Array or ArrayBuffer");
+  if (typeof format !== "string") throw wrong("format: give a text, such as 'glb', or the file's name");
   const { mesh, notes } = call("load", data, format.includes(".") ? format : `model${format ? "." : ""}${format}`);
   const made = meshOf(mesh);
   let result = made;
@@ -414,23 +481,23 @@ export function load(bytes, format = "") {
   return result;
 }
 
-const shape = (name, size, fineness, letter = "") => new Solid(new Made(call("shape", name, size, fineness, letter)));
+const shape = (name, given) => new Solid(new Made(call("shape", name, given)));
 /** Shapes to try things with. */
 export const shapes = {
-  block: (size = [1, 1, 1], { edge = 0.25 } = {}) => shape("block", rows(size, "size"), edge),
-  sphere: (frequency = 8) => shape("sphere", [], frequency),
-  pumpkin: (frequency = 16) => shape("pumpkin", [], frequency),
-  apple: (frequency = 16) => shape("apple", [], frequency),
-  polyp: (frequency = 12) => shape("polyp", [], frequency),
-  letter: (letter, { depth = 0.2, resolution = 12 } = {}) => shape("letter", [depth], resolution, letter),
+  block: (size = [1, 1, 1], given) => shape("block", { ...known(given, ["edge"], "block"), size: rows(size, "size") }),
+  sphere: (frequency = 8) => shape("sphere", { frequency }),
+  pumpkin: (frequency = 16) => shape("pumpkin", { frequency }),
+  apple: (frequency = 16) => shape("apple", { frequency }),
+  polyp: (frequency = 12) => shape("polyp", { frequency }),
+  letter: (letter, given) => shape("letter", { ...known(given, ["depth", "resolution"], "letter"), letter }),
 };
 
 // ---- Beginning
 
 /** Begins a simulation; loads its module first. */
-async function simulation(scene, options = {}) {
+async function simulation(scene, options) {
   const { begin } = await import("./simulation.js");
-  return begin(scene, options, { Mesh, rows, numbers, taken, Owner, KerfError, withProgress });
+  return begin(scene, options, { Mesh, rows, numbers, taken, Owner, known, wrong, withProgress });
 }
 
 const api = {
@@ -441,7 +508,8 @@ const api = {
 };
 
 /** Loads the module, once. `wasm`: where it is, or its bytes; by default beside this file. */
-export default async function kerf({ wasm } = {}) {
-  core ??= await started(makeCore, wasm ?? new URL("./kerf-core.wasm", import.meta.url));
+export default async function kerf(given) {
+  const { wasm } = known(given, ["wasm"], "kerf");
+  core = await started(wasm ?? new URL("./kerf-core.wasm", import.meta.url));
   return api;
 }

@@ -1,8 +1,8 @@
 // Simulations, in a module of WebAssembly of their own: it is loaded where a program asks for one.
 import makeSimulation from "./kerf-simulation.js";
-import { started } from "./load.js";
+import { once } from "./load.js";
 
-let module = null;
+const started = once(makeSimulation);
 
 // A value as TOML writes it.
 function toml(value) {
@@ -11,9 +11,11 @@ function toml(value) {
   return typeof value === "string" ? JSON.stringify(value) : String(value);
 }
 
-export async function begin(scene, { models = [], set = {}, progress, wasm } = {}, kerf) {
-  const { Mesh, Owner, numbers, rows, taken, withProgress, KerfError } = kerf;
-  module ??= await started(makeSimulation, wasm ?? new URL("./kerf-simulation.wasm", import.meta.url));
+export async function begin(scene, given, kerf) {
+  const { Mesh, Owner, numbers, rows, taken, known, wrong, withProgress } = kerf;
+  const { models = [], set = {}, progress, wasm } = known(given, ["models", "set", "progress", "wasm"], "simulation");
+  if (typeof scene !== "string") throw wrong("scene: give the text of a scene, in TOML");
+  const module = await started(wasm ?? new URL("./kerf-simulation.wasm", import.meta.url));
   const call = (name, ...given) => taken(module[name](...given));
   const pose = (given) => numbers(Float64Array, given, "pose");
 
@@ -25,7 +27,7 @@ export async function begin(scene, { models = [], set = {}, progress, wasm } = {
     move(to) { call("move", this.#run.handle, this.#kind, this.index, pose(to)); }
     /** Lets go, where it is a grip. */
     end() {
-      if (this.#kind !== "grip") throw new KerfError("InputError", `end: a ${this.#kind} ends where it is moved no more`);
+      if (this.#kind !== "grip") throw wrong(`end: a ${this.#kind} ends where it is moved no more`);
       call("endGrip", this.#run.handle, this.index);
     }
   }
@@ -47,27 +49,35 @@ export async function begin(scene, { models = [], set = {}, progress, wasm } = {
       while (this.frame < this.frames && each(this, this.step()) !== false);
       return this;
     }
-    /** The deformed surface: vertices, faces, patch, site. */
+    /** The deformed surface: vertices, faces, patch, site; of one body, uv, colors, groups and groupNames, too. */
     surface() { return call("surface", this.handle); }
     save(format) { return call("saveRun", this.handle, format); }
     blade(index) { return new Moved(this, "blade", index); }
     grip(index) { return new Moved(this, "grip", index); }
     obstacle(index) { return new Moved(this, "obstacle", index); }
-    addBlade(points, at, options = {}) { return this.blade(call("addBlade", this.handle, rows(points, "points"), pose(at), options)); }
+    addBlade(points, at, given) {
+      const options = known(given, ["closed", "back", "thickness", "stiffness"], "addBlade");
+      return this.blade(call("addBlade", this.handle, rows(points, "points"), pose(at), options));
+    }
     addGrip(lo, hi) { return this.grip(call("addGrip", this.handle, rows(lo, "lo"), rows(hi, "hi"))); }
-    addPull(point, to, { stiffness = 100 } = {}) {
+    addPull(point, to, given) {
+      const { stiffness = 100 } = known(given, ["stiffness"], "addPull");
       return new Moved(this, "pull", call("addPull", this.handle, rows(point, "point"), rows(to, "to"), stiffness));
     }
     /** Breaks the piece nearest to a point of the world into about `cells` parts, which fly from it. */
-    strike(point, options = {}) { call("strike", this.handle, rows(point, "point"), options); }
-    change(values) { call("change", this.handle, values.gravity === undefined ? values : { ...values, gravity: rows(values.gravity, "gravity") }); }
+    strike(point, given) { call("strike", this.handle, rows(point, "point"), known(given, ["cells"], "strike")); }
+    change(given) {
+      const values = known(given, ["young", "damping", "friction", "accuracy", "step", "gravity"], "change");
+      call("change", this.handle, values.gravity === undefined ? values : { ...values, gravity: rows(values.gravity, "gravity") });
+    }
     /** Bytes of the module's heap that are in use. */
     static usedBytes() { return module.usedBytes(); }
   }
 
   const meshes = (Array.isArray(models) ? models : [models]).map((mesh) => {
-    if (!(mesh instanceof Mesh)) throw new KerfError("InputError", "models: give a Mesh, or a list of these");
-    return { vertices: mesh.vertices, faces: mesh.faces };
+    if (!(mesh instanceof Mesh)) throw wrong("models: give a Mesh, or a list of these");
+    const { vertices, faces, uv, colors, groups, groupNames } = mesh;
+    return { vertices, faces, uv, colors, groups, groupNames };
   });
   const overrides = Object.entries(set).map(([key, value]) => [key, toml(value)]);
   return new Simulation(withProgress(progress, (report) => call("beginRun", scene, meshes, overrides, report)));

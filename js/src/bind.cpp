@@ -1,7 +1,9 @@
 // Errors keep the name of their class; numbers are checked before the library sees them.
 #include "bind.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 #include <kerf/parallel.h>
 
@@ -15,13 +17,18 @@ val failure_of(const char* kind, const std::string& message) {
   return result;
 }
 
+// As people write it: "0.01", "20000".
+std::string written(double x) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.16g", x);
+  return text.data();
+}
+
 double number(const val& options, const char* name, double least, double most) {
   const val given = options[name];
   const double value = given.isNumber() ? given.as<double>() : std::nan("");
-  if (!(value >= least && value <= most)) {
-    std::string range = std::to_string(least) + " to " + std::to_string(most);
-    throw geo::InputError(std::string(name) + ": give a number from " + range);
-  }
+  if (!(value >= least && value <= most))
+    throw geo::InputError(std::string(name) + ": give a number from " + written(least) + " to " + written(most));
   return value;
 }
 

@@ -25,10 +25,21 @@ struct Mesh {
 };
 using MeshHandle = std::shared_ptr<Mesh>;
 
+struct Front;
 /// A cracked model, with the surface that it was made of.
 struct Complex {
   geo::Complex complex;
   MeshHandle model;
+  std::weak_ptr<Front> moved = {};  ///< the front that made the last edit
+  geo::FrontState before = {};      ///< of `moved`, before that edit
+  std::uint64_t changed = 0;        ///< how often all of it was changed: fronts have ended
+  bool changed_whole = false;       ///< by the last edit, of many steps: it cannot be taken back
+
+  /// The last edit was made by no front.
+  void forget_front() {
+    moved.reset();
+    changed_whole = false;
+  }
 };
 using ComplexHandle = std::shared_ptr<Complex>;
 
@@ -99,6 +110,18 @@ geo::Vec3 point_from(const val& array, const std::string& name);
 /// The bytes of a Uint8Array.
 std::string text_from(const val& bytes);
 
+/// Throws InputError where a mesh is no solid: why, and what makes one of it.
+void demand_solid(const geo::TriangleMesh& mesh);
+
+// ---- Attributes
+
+/// Sets the attributes of a mesh from an object with uv, normals, colors (Float64Array, a row for each
+/// vertex or for each corner of each face), groups (Int32Array) and groupNames; all may be absent.
+/// Throws InputError for a wrong number of them.
+void read_attributes(const val& given, geo::TriangleMesh& mesh);
+/// An attribute by that name as an array; undefined: there is none.
+val attribute_array(const geo::Attributes& attributes, const std::string& name);
+
 // ---- Options: an object whose absent keys keep the defaults
 
 /// Sets `out` where the object has a number of this name. Throws InputError where it is not finite
@@ -110,6 +133,9 @@ void take(const val& options, const char* name, int& out, int least, int most);
 void take_seed(const val& options, const char* name, std::uint64_t& out);
 /// Whether the object has this key with a value.
 bool has(const val& options, const char* name);
+
+/// The faces that an edit removed and made: {removedFaces, newFaces, newCrackFaces}.
+val changes(const geo::CrackDelta& delta);
 
 /// Tolerances of cracks: snap, snapEdges, faceOffset, clearance, jitter, attempts, seed.
 geo::CrackOptions crack_options(const val& options);

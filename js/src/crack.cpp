@@ -13,13 +13,6 @@
 namespace kerf_js {
 namespace {
 
-// The front of a complex, which lives as long as either.
-struct Front {
-  ComplexHandle owner;
-  geo::FrontState state;
-};
-using FrontHandle = std::shared_ptr<Front>;
-
 geo::Vec3 axis_from(const val& axis) {
   if (axis.isString()) {
     const auto name = axis.as<std::string>();
@@ -103,13 +96,13 @@ geo::Complex complex_of(const geo::TriangleMesh& mesh) {
 
 val make_complex(const MeshHandle& model) {
   return guarded([&] {
-    geo::require_solid(model->mesh);
+    demand_solid(model->mesh);
     return std::make_shared<Complex>(Complex{complex_of(model->mesh), model});
   });
 }
 
 val copy_complex(const ComplexHandle& complex) {
-  return guarded([&] { return std::make_shared<Complex>(*complex); });
+  return guarded([&] { return std::make_shared<Complex>(Complex{complex->complex, complex->model}); });
 }
 
 val score(const ComplexHandle& model, const val& options, const val& progress) {
@@ -125,23 +118,12 @@ val score(const ComplexHandle& model, const val& options, const val& progress) {
   });
 }
 
-val changes(const geo::CrackDelta& delta) {
-  const auto ids = [](const std::vector<geo::FaceId>& faces) {
-    std::vector<std::uint32_t> values;
-    for (const geo::FaceId f : faces) values.push_back(f.value);
-    return array_of(values);
-  };
-  val result = val::object();
-  result.set("removedFaces", ids(delta.removed_faces));
-  result.set("newFaces", ids(delta.new_faces));
-  result.set("newCrackFaces", ids(delta.new_crack_faces));
-  return result;
-}
-
 val insert(const ComplexHandle& complex, const MeshHandle& sheet, const val& options) {
   return guarded([&] {
     geo::Complex& k = complex->complex;
-    return changes(geo::insert_sheet(k, sheet->mesh, k.crack_count() + 1, crack_options(options)));
+    const val made = changes(geo::insert_sheet(k, sheet->mesh, k.crack_count() + 1, crack_options(options)));
+    complex->forget_front();
+    return made;
   });
 }
 
@@ -168,10 +150,6 @@ val surface(const ComplexHandle& complex) {
     if (complex->model) geo::transfer_attributes(complex->model->mesh, mesh);
     return handle(std::move(mesh));
   });
-}
-
-val undo(const ComplexHandle& complex) {
-  return guarded([&] { complex->complex.undo(); });
 }
 
 val counts(const ComplexHandle& complex) {
@@ -283,48 +261,22 @@ val save_pieces(const ComplexHandle& complex, const std::string& format, const v
   });
 }
 
-// ---- Fronts
-
-val begin_front(const ComplexHandle& complex, const val& points, bool closed, int crack) {
-  return guarded([&] {
-    const auto line = points_from(points, "points");
-    const std::int32_t number = std::max(crack, complex->complex.crack_count() + 1);
-    return std::make_shared<Front>(Front{complex, geo::begin_front(line, closed, number)});
-  });
-}
-
-val advance(const FrontHandle& front, const val& points, const val& options) {
-  return guarded([&] {
-    std::vector<geo::Vec3> present;
-    for (const auto& p : front->state.points) present.push_back(p.position);
-    const auto next = geo::resample_front(present, points_from(points, "points"), front->state.closed);
-    return changes(geo::advance(front->owner->complex, front->state, next, crack_options(options)));
-  });
-}
-
-int front_crack(const FrontHandle& front) { return front->state.crack; }
-
 }  // namespace
 
 EMSCRIPTEN_BINDINGS(kerf_crack) {
   emscripten::class_<Complex>("ComplexHandle").smart_ptr<ComplexHandle>("ComplexHandle");
-  emscripten::class_<Front>("FrontHandle").smart_ptr<FrontHandle>("FrontHandle");
   emscripten::function("makeComplex", &make_complex);
   emscripten::function("copyComplex", &copy_complex);
   emscripten::function("score", &score);
   emscripten::function("insert", &insert);
   emscripten::function("planeSheet", &plane_sheet);
   emscripten::function("surface", &surface);
-  emscripten::function("undo", &undo);
   emscripten::function("counts", &counts);
   emscripten::function("checkComplex", &check);
   emscripten::function("pieces", &pieces);
   emscripten::function("bonds", &bonds);
   emscripten::function("hierarchy", &hierarchy);
   emscripten::function("savePieces", &save_pieces);
-  emscripten::function("beginFront", &begin_front);
-  emscripten::function("advance", &advance);
-  emscripten::function("frontCrack", &front_crack);
 }
 
 }  // namespace kerf_js

@@ -13,7 +13,13 @@ using BreakableHandle = std::shared_ptr<Breakable>;
 using BreakingHandle = std::shared_ptr<geo::Breaking>;
 
 val make_breakable(const MeshHandle& solid) {
-  return guarded([&] { return std::make_shared<Breakable>(solid->mesh); });
+  return guarded([&] {
+    try {
+      return std::make_shared<Breakable>(solid->mesh);
+    } catch (const geo::InputError& e) {
+      throw geo::InputError(std::string(e.what()) + ", or try Solid.repaired()");
+    }
+  });
 }
 
 val breakable_mesh(const BreakableHandle& solid) {

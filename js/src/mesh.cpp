@@ -13,45 +13,6 @@
 namespace kerf_js {
 namespace {
 
-// Values of corners: one row for each corner of each face, or one for each vertex.
-template <class Value>
-std::vector<std::array<Value, 3>> corners_from(const val& given, const char* name, const geo::TriangleMesh& mesh) {
-  constexpr std::size_t width = Value::RowsAtCompileTime;
-  if (!has(given, name)) return {};
-  const auto numbers = numbers_from<double>(given[name]);
-  const bool by_vertex = numbers.size() == width * mesh.vertices.size();
-  if (!by_vertex && numbers.size() != 3 * width * mesh.triangles.size())
-    throw geo::InputError(std::string(name) + ": give " + std::to_string(width) +
-                          " numbers for each vertex, or for each corner of each face");
-  std::vector<std::array<Value, 3>> corners(mesh.triangles.size());
-  for (std::size_t f = 0; f < corners.size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t row = by_vertex ? mesh.triangles[f][k] : 3 * f + k;
-      for (std::size_t i = 0; i < width; ++i) corners[f][k][static_cast<Eigen::Index>(i)] = numbers[width * row + i];
-    }
-  return corners;
-}
-
-template <class Value>
-val corners_to(const std::vector<std::array<Value, 3>>& corners) {
-  if (corners.empty()) return val::undefined();
-  constexpr std::size_t width = Value::RowsAtCompileTime;
-  return array_of(corners[0][0].data(), 3 * width * corners.size());
-}
-
-void read_groups(const val& given, geo::TriangleMesh& mesh) {
-  if (!has(given, "groups")) return;
-  const auto groups = numbers_from<std::int32_t>(given["groups"]);
-  const auto names = has(given, "groupNames") ? emscripten::vecFromJSArray<std::string>(given["groupNames"])
-                                              : std::vector<std::string>();
-  if (groups.size() != mesh.triangles.size()) throw geo::InputError("groups: give one for each face");
-  for (const auto group : groups)
-    if (group < 0 || static_cast<std::size_t>(group) >= names.size())
-      throw geo::InputError("groups: each is an index of groupNames");
-  mesh.attributes.group = groups;
-  mesh.attributes.group_names = names;
-}
-
 // vertices: Float64Array; faces: Uint32Array; attributes: uv, normals, colors, groups, groupNames.
 val make_mesh(const val& vertices, const val& faces, const val& attributes) {
   return guarded([&] {
@@ -65,10 +26,7 @@ val make_mesh(const val& vertices, const val& faces, const val& attributes) {
                               ", but there are " + std::to_string(mesh.vertices.size()));
     for (std::size_t i = 0; i < corners.size(); i += 3)
       mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
-    mesh.attributes.uv = corners_from<geo::Vec2>(attributes, "uv", mesh);
-    mesh.attributes.normal = corners_from<geo::Vec3>(attributes, "normals", mesh);
-    mesh.attributes.color = corners_from<geo::Color>(attributes, "colors", mesh);
-    read_groups(attributes, mesh);
+    read_attributes(attributes, mesh);
     return handle(std::move(mesh));
   });
 }
@@ -76,7 +34,6 @@ val make_mesh(const val& vertices, const val& faces, const val& attributes) {
 // An array of the mesh by its name; undefined: it has none.
 val mesh_array(const MeshHandle& m, const std::string& name) {
   const geo::TriangleMesh& mesh = m->mesh;
-  const geo::Attributes& attributes = mesh.attributes;
   const auto unless_empty = [](const auto& numbers) { return numbers.empty() ? val::undefined() : array_of(numbers); };
   if (name == "vertices") return array_of(mesh.vertices);
   if (name == "faces")
@@ -84,12 +41,7 @@ val mesh_array(const MeshHandle& m, const std::string& name) {
   if (name == "patch") return unless_empty(mesh.patch);
   if (name == "source") return unless_empty(mesh.source);
   if (name == "site") return unless_empty(mesh.site);
-  if (name == "groups") return unless_empty(attributes.group);
-  if (name == "groupNames") return val::array(attributes.group_names);
-  if (name == "uv") return corners_to(attributes.uv);
-  if (name == "normals") return corners_to(attributes.normal);
-  if (name == "colors") return corners_to(attributes.color);
-  return val::undefined();
+  return attribute_array(mesh.attributes, name);
 }
 
 val mesh_measures(const MeshHandle& m) {
@@ -119,8 +71,8 @@ val check_mesh(const MeshHandle& m) {
   });
 }
 
-val require_solid(const MeshHandle& m) {
-  return guarded([&] { geo::require_solid(m->mesh); });
+val require_solid_mesh(const MeshHandle& m) {
+  return guarded([&] { demand_solid(m->mesh); });
 }
 
 val repaired(const MeshHandle& m, const val& options) {
@@ -167,27 +119,63 @@ val save(const MeshHandle& m, const std::string& format) {
   });
 }
 
-val hulls(const MeshHandle& m, int count, int corners) {
+val hulls(const MeshHandle& m, const val& options) {
   return guarded([&] {
+    int parts = 1, corners = 64;
+    take(options, "parts", parts, 1, 1000);
+    take(options, "corners", corners, 4, 100000);
     val result = val::array();
     for (geo::TriangleMesh& hull :
-         geo::convex_decomposition(m->mesh, static_cast<std::size_t>(count), static_cast<std::size_t>(corners)))
+         geo::convex_decomposition(m->mesh, static_cast<std::size_t>(parts), static_cast<std::size_t>(corners)))
       append(result, val(handle(std::move(hull))));
     return result;
   });
 }
 
-// Shapes: by name, with a size of the triangles.
-val shape(const std::string& name, const val& size, double fineness, const std::string& letter) {
+// ---- Refinement, shapes
+
+// Triangles, as of geo::refined(). Solids of so many need more than the 2 GB of a module's memory.
+constexpr double most_triangles = 2e7;
+
+val refined(const MeshHandle& m, const val& longest) {
   return guarded([&] {
-    const int n = static_cast<int>(fineness);
-    if (name == "block") return handle(geo::make_block(point_from(size, "size"), fineness));
-    if (name == "sphere") return handle(geo::make_sphere(n));
-    if (name == "pumpkin") return handle(geo::make_pumpkin(n));
-    if (name == "apple") return handle(geo::make_apple(n));
-    if (name == "polyp") return handle(geo::make_polyp(n));
-    if (letter.size() != 1) throw geo::InputError("letter: give one capital letter");
-    return handle(geo::make_letter(letter[0], size[0].as<double>(), n));
+    const double edge = longest.isNumber() ? longest.as<double>() : 0;
+    if (!(edge > 0)) throw geo::InputError("longest: give a length above 0");
+    if (m->mesh.two_sided()) throw geo::InputError("the surface has cracks, and is not refined; refine the model");
+    return handle(geo::refined(m->mesh, edge));
+  });
+}
+
+geo::TriangleMesh block(const geo::Vec3& size, const val& options) {
+  double edge = 0.25;
+  take(options, "edge", edge, 1e-60, 1e60);
+  const geo::Vec3 cells = (size / edge).cwiseMax(1);
+  if (4 * (cells.x() * cells.y() + cells.y() * cells.z() + cells.z() * cells.x()) > most_triangles)
+    throw geo::InputError("edge: the block would have more than 20 million triangles; give a longer edge");
+  return geo::make_block(size, edge);
+}
+
+geo::TriangleMesh letter(const val& options) {
+  const auto name = options["letter"].isString() ? options["letter"].as<std::string>() : std::string();
+  if (name.size() != 1) throw geo::InputError("letter: give one capital letter");
+  int resolution = 12;
+  double depth = 0.2;
+  take(options, "resolution", resolution, 12, 1000);
+  take(options, "depth", depth, 1e-6, 1e6);
+  return geo::make_letter(name[0], depth, resolution);
+}
+
+// A shape by its name: {size, edge}, {letter, depth, resolution} or {frequency}.
+val shape(const std::string& name, const val& options) {
+  return guarded([&] {
+    if (name == "block") return handle(block(point_from(options["size"], "size"), options));
+    if (name == "letter") return handle(letter(options));
+    int frequency = 16;
+    take(options, "frequency", frequency, 1, 1000);
+    if (name == "sphere") return handle(geo::make_sphere(frequency));
+    if (name == "pumpkin") return handle(geo::make_pumpkin(frequency));
+    if (name == "apple") return handle(geo::make_apple(frequency));
+    return handle(geo::make_polyp(frequency));
   });
 }
 
@@ -202,11 +190,12 @@ EMSCRIPTEN_BINDINGS(kerf_mesh) {
   emscripten::function("meshArray", &mesh_array);
   emscripten::function("meshMeasures", &mesh_measures);
   emscripten::function("checkMesh", &check_mesh);
-  emscripten::function("requireSolid", &require_solid);
+  emscripten::function("requireSolid", &require_solid_mesh);
   emscripten::function("repaired", &repaired);
   emscripten::function("load", &load);
   emscripten::function("save", &save);
   emscripten::function("hulls", &hulls);
+  emscripten::function("refined", &refined);
   emscripten::function("shape", &shape);
   emscripten::function("usedBytes", &used_bytes);
 }

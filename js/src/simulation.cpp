@@ -14,7 +14,12 @@
 namespace kerf_js {
 namespace {
 
-using Run = geo::Simulation;
+// A run, with the models that it was made of.
+struct Run : geo::Simulation {
+  Run(const geo::Scene& scene, const geo::PlacedModels& placed, const geo::Progress& progress)
+      : geo::Simulation(scene, placed, progress), models(placed.all) {}
+  geo::TriangleMesh models;
+};
 using RunHandle = std::shared_ptr<Run>;
 
 // A model of a scene as the tools treat it: valid, whole, in metres.
@@ -24,15 +29,16 @@ geo::TriangleMesh scene_model(const val& given, const std::string& name) {
   const auto corners = numbers_from<std::uint32_t>(given["faces"]);
   for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
     mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  read_attributes(given, mesh);
   try {
-    geo::require_solid(mesh);
+    demand_solid(mesh);
   } catch (const geo::InputError& e) {
     throw geo::InputError(name + ": " + e.what());
   }
   return mesh;
 }
 
-// scene: TOML; models: a list of {vertices, faces}; overrides: a list of [key, value as TOML].
+// scene: TOML; models: a list of {vertices, faces} with attributes; overrides: a list of [key, value as TOML].
 val begin_run(const std::string& scene_text, const val& models, const val& overrides, const val& progress) {
   return guarded([&] {
     geo::SceneOverrides values;
@@ -80,11 +86,13 @@ val field(const RunHandle& run, const std::string& name) {
   });
 }
 
-// The deformed surface as arrays.
+// The deformed surface as arrays; attributes are those of the model, where there is one body.
 val surface(const RunHandle& run) {
   return guarded([&] {
-    const geo::TriangleMesh mesh = run->surface();
+    const geo::TriangleMesh mesh = run->surface(&run->models);
     val result = val::object();
+    for (const char* name : {"uv", "colors", "groups", "groupNames"})
+      result.set(name, attribute_array(mesh.attributes, name));
     result.set("vertices", array_of(mesh.vertices));
     result.set("faces", array_of(mesh.triangles.data()->data(), 3 * mesh.triangles.size()));
     result.set("patch", array_of(mesh.patch));

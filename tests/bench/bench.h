@@ -67,7 +67,7 @@ int python(const Options& options);  ///< where the module is built
 int score(const Options& options);
 int simulation(const Options& options);
 int validate(const Options& options);
-int wasm(const Options& options);  ///< after js/build --tests
+int wasm(const Options& options);  ///< after js/build --all-tests
 
 /// Figures by name: one JSON object on a line, or a table.
 using Figures = std::map<std::string, double>;

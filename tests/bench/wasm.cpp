@@ -18,7 +18,7 @@ WasmTimes by_node(const std::string& program) {
   if (FILE* const file = std::fopen(program.c_str(), "r"))
     std::fclose(file);
   else
-    throw geo::MissingInputError(program + ": is not there; make it by js/build --tests");
+    throw geo::MissingInputError(program + ": is not there; make it by js/build --all-tests");
   FILE* const pipe = popen(("node --no-experimental-fetch '" + program + "'").c_str(), "r");
   WasmTimes times;
   const bool read = pipe && std::fscanf(pipe, "%lf %lf %lf", &times.cut, &times.score, &times.step) == 3;

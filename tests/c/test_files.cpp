@@ -1,5 +1,6 @@
 // Files of meshes in C: an .stl of a solid is a solid as it is written.
 #include <catch2/catch.hpp>
+#include <string>
 #include <vector>
 
 #include "kerf.h"
@@ -68,4 +69,26 @@ TEST_CASE("a solid is one in its .stl, too", "[c]") {
   kerf_free(rounded);
   kerf_free(read);
   kerf_free(bytes);
+}
+
+TEST_CASE("a mesh that is no solid is refused with what mends it", "[c]") {
+  const double size[3] = {1, 1, 1};
+  kerf_mesh block = nullptr, open = nullptr, mended = nullptr;
+  REQUIRE(kerf_shape_block(size, 0.5, &block) == KERF_OK);
+  kerf_mesh_arrays arrays{};
+  REQUIRE(kerf_mesh_get(block, &arrays) == KERF_OK);
+  arrays.faces_length -= 3;
+  REQUIRE(kerf_mesh_create(&arrays, &open) == KERF_OK);
+  kerf_solid solid = nullptr;
+  kerf_complex complex = nullptr;
+  const std::string remedy = "or try kerf_mesh_repaired()";
+  CHECK(kerf_solid_create(open, &solid) == KERF_INPUT);
+  CHECK(std::string(kerf_last_message()).find(remedy) != std::string::npos);
+  CHECK(kerf_complex_create(open, &complex) == KERF_INPUT);
+  CHECK(std::string(kerf_last_message()).find(remedy) != std::string::npos);
+  REQUIRE(kerf_mesh_repaired(open, 0, 0, &mended) == KERF_OK);
+  CHECK(kerf_solid_create(mended, &solid) == KERF_OK);
+  for (void* handle :
+       {static_cast<void*>(block), static_cast<void*>(open), static_cast<void*>(mended), static_cast<void*>(solid)})
+    CHECK(kerf_free(handle) == KERF_OK);
 }

@@ -3,7 +3,11 @@
 import assert from "node:assert/strict";
 import kerf from "kerf";
 
-const k = await kerf();
+// A start that fails may be made again; two at once start one module.
+await assert.rejects(kerf({ wasm: new Uint8Array([1, 2, 3]) }));
+await assert.rejects(kerf({ wsam: "" }), { name: "InputError", message: /wasm/ });
+const [k, again] = await Promise.all([kerf(), kerf()]);
+assert.equal(again.shapes.block([1, 1, 1]).split(k.plane([0, 0, 0.5], [0, 0, 1])).length, 2);
 const near = (a, b, share = 1e-9) => assert.ok(Math.abs(a - b) <= share * Math.abs(b), `${a} is not ${b}`);
 const sum = (list) => list.reduce((total, x) => total + x, 0);
 const free = (list) => list.forEach((object) => object.delete());
@@ -137,10 +141,47 @@ const tests = {
     assert.equal(swept.length, 2);
     free(swept), front.delete(), complex.delete(), cube.delete();
   },
+  "a front that was undone goes on from where it was"() {
+    const cube = k.shapes.block([1, 1, 1]), line = (y) => [[-0.2, y, 0.51], [0.5, y, 0.49], [1.2, y, 0.5]];
+    for (const steps of [[-0.1, 0.5], [-0.1, 0.5, 0.8]]) {
+      const complex = cube.complex(), front = complex.front(line(steps[0]));
+      for (const y of steps.slice(1)) front.advance(line(y));
+      complex.undo();
+      front.advance(line(1.1));
+      const pieces = complex.pieces();
+      assert.equal(pieces.length, 2);
+      assert.equal(complex.check(), "");
+      free([...pieces, front, complex]);
+    }
+    cube.delete();
+  },
+  "a complex is made rougher, coarser, and its crumbs are healed"() {
+    const pumpkin = k.shapes.pumpkin(6), complex = pumpkin.crack(k.score(pumpkin, { pieces: 12, seed: 2 }));
+    const volumes = () => complex.pieces().map((piece) => [piece.volume, piece.delete()][0]);
+    const before = volumes(), front = complex.front([[-2, -2, 0.1], [2, -2, 0.1]]);
+    assert.ok(complex.roughen({ amplitude: 0.01, frequency: 10, seed: 3 }).newFaces.length > 0);
+    near(sum(volumes()), sum(before));
+    assert.throws(() => front.advance([[-2, 0, 0.1], [2, 0, 0.1]]), { name: "InputError", message: /ended/ });
+    assert.throws(() => complex.undo(), { name: "GeometryError", message: /whole complex/ });
+    const count = complex.faceCount;
+    assert.throws(() => complex.decimate({ deviation: 0.01, progress: () => false }), { name: "Interrupted" });
+    assert.equal(complex.faceCount, count);
+    complex.decimate({ deviation: 0.01 });
+    assert.ok(complex.faceCount < count);
+    complex.remesh({ angle: 10 });
+    const least = 1.001 * before[8], after = complex.joinSmallPieces(least);
+    assert.equal(after, complex);
+    assert.ok(volumes().length < before.length && volumes().every((volume) => volume >= least));
+    assert.equal(complex.check(), "");
+    const cube = k.shapes.block([1, 1, 1]), fine = cube.refine(0.1);
+    assert.ok(fine instanceof k.Solid && fine.faces.length > cube.faces.length);
+    near(fine.volume, 1);
+    free([front, complex, pumpkin, cube, fine]);
+  },
   "wrong input is an error with a sentence"() {
     const fails = (work, name, words) => assert.throws(work, (error) => error instanceof k.KerfError && error.name === name && words.test(error.message));
     const cube = k.shapes.block([1, 1, 1]);
-    fails(() => new k.Solid(cube.vertices, cube.faces.subarray(3)), "InputError", /open|hole/);
+    fails(() => new k.Solid(cube.vertices, cube.faces.subarray(3)), "InputError", /open.*Solid\.repaired/);
     fails(() => new k.Mesh([0, 0], [0, 0, 0]), "InputError", /three numbers/);
     fails(() => new k.Mesh([0, 0, NaN], [[0, 0, 0]]), "InputError", /finite/);
     fails(() => new k.Mesh([0, 0, 0], [[0, 1, 0]]), "InputError", /vertex 1/);
@@ -159,8 +200,20 @@ const tests = {
     fails(() => cube.save("fbx"), "InputError", /fbx/);
     fails(() => k.shapes.block([1, -1, 1]), "InputError", /./);
     fails(() => cube.complex().front([[0, 0, 0]]), "InputError", /two/);
+    fails(() => cube.fracture(5, { peices: 3 }), "InputError", /no option 'peices'; there are pattern, /);
+    fails(() => cube.fracture(5, { pieces: 3 }), "InputError", /no option 'pieces'/);
+    fails(() => cube.strike([1, 1, 1], 1, { budget: 4 }), "InputError", /milliseconds/);
+    fails(() => cube.split(k.plane([0, 0, 0.5], [0, 0, 1]), { snapp: 1 }), "InputError", /snap, /);
+    fails(() => k.score([1, 2]), "InputError", /Solid/), fails(() => k.Solid.repaired(), "InputError", /Mesh/);
+    fails(() => new k.Complex(), "InputError", /Solid/), fails(() => k.load(cube.save("ply"), 7), "InputError", /glb/);
+    fails(() => cube.fracture(5, { progress: "x" }), "InputError", /function/), fails(() => cube.save(), "InputError", /glb/);
+    fails(() => cube.fracture("5"), "InputError", /from 1 to 1000000$/), fails(() => cube.decomposition({ parts: 0 }), "InputError", /parts/);
+    fails(() => k.shapes.block([1, 1, 1], { edge: 1e-6 }), "InputError", /20 million/), fails(() => k.shapes.sphere(2.5), "InputError", /whole/);
+    fails(() => cube.refine(0), "InputError", /above 0/), fails(() => new k.Mesh([0, 0, 0], [], { uvs: [] }), "InputError", /uv, /);
     const holes = new k.Mesh(cube.vertices, cube.faces.subarray(3));
     assert.equal(holes.check().closed, false);
+    fails(() => holes.complex(), "InputError", /or try Solid\.repaired\(\)$/);
+    fails(() => new k.Breakable(holes), "InputError", /or try Solid\.repaired\(\)$/);
     const mended = k.Solid.repaired(holes);
     near(mended.volume, 1);
     mended.delete(), holes.delete(), cube.delete();

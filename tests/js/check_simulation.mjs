@@ -19,8 +19,18 @@ step = 0.01
 frames = 4
 `;
 
+// A block whose faces at x = 0 are red, with texture coordinates y and z.
+function painted(k) {
+  const block = k.shapes.block([1, 1, 1], { edge: 0.25 }), { vertices, faces } = block;
+  const uv = Array.from(faces, (v) => [vertices[3 * v + 1], vertices[3 * v + 2]]);
+  const groups = Array.from({ length: faces.length / 3 }, (_, f) => Number(faces.slice(3 * f, 3 * f + 3).every((v) => vertices[3 * v] === 0)));
+  const made = new k.Solid(vertices, faces, { uv, groups, groupNames: ["wood", "red"] });
+  block.delete();
+  return made;
+}
+
 async function run() {
-  const block = k.shapes.block([1, 1, 1], { edge: 0.25 });
+  const block = painted(k);
   const simulation = await k.simulation(scene, { models: block, set: { "gravity": [0, 0, -1] } });
   const knife = simulation.addBlade([[-1, 0, 0], [2, 0, 0]], [0, 0.5, 1.3]);
   const grip = simulation.addGrip([-0.1, -0.1, -0.1], [1.1, 0.2, 0.1]);
@@ -35,6 +45,14 @@ async function run() {
   assert.equal(simulation.pieceCount, 2);
   const surface = simulation.surface(), made = new k.Mesh(surface.vertices, surface.faces);
   assert.ok(made.check().closed && Math.abs(made.volume - 1) < 0.05);
+  assert.equal(surface.uv.length, 2 * surface.faces.length);
+  for (let f = 0; f < surface.groups.length; f++) {
+    const name = surface.groupNames[surface.groups[f]];
+    if (surface.patch[f] !== 0) assert.equal(name, "crack");
+    else assert.ok(name === "red" || name === "wood");
+  }
+  const red = surface.uv.filter((_, i) => surface.groupNames[surface.groups[Math.floor(i / 6)]] === "red");
+  assert.ok(red.length > 6 && Math.min(...red) === 0 && Math.max(...red) === 1);
   assert.equal(simulation.positions.length, simulation.stress.length * 3);
   assert.ok(Math.max(...simulation.stress) > 0);
   grip.end(), simulation.change({ young: 1e5, gravity: [0, 0, 0] });
@@ -56,4 +74,6 @@ const before = await run();
 const after = await run();
 assert.ok(after - before < 4096, `${after - before} bytes are left`);
 await assert.rejects(k.simulation("[body]\nmesh = 1\n", {}), { name: "InputError" });
+await assert.rejects(k.simulation(7), { name: "InputError", message: /TOML/ });
+await assert.rejects(k.simulation("", { model: 1 }), { name: "InputError", message: /models, / });
 console.log("simulation: a blade parts a block");

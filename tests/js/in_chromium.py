@@ -1,4 +1,4 @@
-"""in_chromium.py BUILD_DIR MODEL...: prints what `outcomes break MODEL...` prints in headless Chromium (js/build --tests)."""
+"""in_chromium.py BUILD_DIR MODEL...: prints what `outcomes break MODEL...` prints in headless Chromium (js/build --all-tests)."""
 import os, sys
 
 sys.dont_write_bytecode = True

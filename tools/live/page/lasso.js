@@ -15,7 +15,7 @@ class Lasso {
   row(message) { return this.knife.row(message); }
   // The whole path, as messages of a knife; null: too short a line to close.
   closed() {
-    const path = lassoPath(this.places, Math.min(20, Math.max(8, this.spacing())));
+    const path = lassoPath(this.places, Math.max(8, this.spacing()));
     return path && path.map(([x, y]) => this.knife.message(x, y));
   }
   // The distance of nodes on the screen.
@@ -24,11 +24,12 @@ class Lasso {
     return (live.told.spacing / about.unit) * focal / camera.position.distanceTo(this.knife.sphere.middle);
   }
 }
-// The path of a lasso on the screen. The line begins `reach` inside of itself, and its end goes across this begin: two cracks
+// The path of a lasso on the screen. The line begins `wanted` pixels inside of itself, less in a small one, and its end goes across this begin: two cracks
 // that meet at a wide angle part what is between them. null: the line is too short.
-function lassoPath(places, reach) {
+function lassoPath(places, wanted) {
   const size = Math.max(...[0, 1].map((k) => Math.max(...places.map((p) => p[k])) - Math.min(...places.map((p) => p[k]))));
-  if (places.length < 4 || size < 4 * reach) return null;
+  const reach = Math.min(wanted, size / 5), shortest = 24;  // pixels
+  if (places.length < 4 || size < shortest) return null;
   let area = 0;
   places.forEach(([x, y], i) => {
     const [u, v] = places[(i + 1) % places.length];
@@ -39,7 +40,7 @@ function lassoPath(places, reach) {
   const along = [at[0] - places[0][0], at[1] - places[0][1]], long = Math.hypot(...along), tangent = along.map((d) => d / long);
   const inward = area > 0 ? [-tangent[1], tangent[0]] : [tangent[1], -tangent[0]];
   const beside = (a, b) => [at[0] + a * inward[0] + b * tangent[0], at[1] + a * inward[1] + b * tangent[1]];
-  const corners = [beside(2 * reach, 0), ...places.slice(from), places[0], beside(reach, 0), beside(1.4 * reach, 1.5 * reach)];
+  const corners = [beside(2 * reach, 0), ...places.slice(from), places[0], beside(reach, 0), beside(1.4 * reach, 2.5 * reach)];
   const path = [corners[0]];
   for (const [x, y] of corners.slice(1)) {
     const [px, py] = path[path.length - 1], n = Math.ceil(Math.hypot(x - px, y - py) / 6);

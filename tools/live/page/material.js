@@ -55,11 +55,11 @@ const softShader = {
     float open = mix(0.72, 1.0, smoothstep(0.0, 0.42, height + 0.25 * max(0.0, dot(normal, groundPlane.xyz))));
     #ifdef WALL
       // What a wound that is vGap wide leaves to see of the sky, this far below the skin.
-      open *= mix(0.22, 1.0, vGap / sqrt(vGap * vGap + 1.4 * depth * depth + 1e-8));
+      open *= mix(0.22, 1.0, vGap / sqrt(vGap * vGap + 0.5 * depth * depth + 1e-8));
     #endif
     outgoingLight *= open;
     #ifdef COATED
-      float mirrored = wet * (0.035 + 0.6 * pow(1.0 - across, 5.0));
+      float mirrored = wet * (0.05 + 0.7 * pow(1.0 - across, 5.0));
       outgoingLight = mix(outgoingLight, skyAt(reflect(-toEye, normal)) * open, mirrored);
     #endif
     // Above a shoulder, brightness approaches 1 and never clips: pale walls keep their shading. Hues stay.

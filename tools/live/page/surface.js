@@ -39,7 +39,7 @@ class Surface {
     const look = looks[state.look] ?? looks.clay;
     for (const material of [...this.fronts(), ...[this.inner.material].flat(), this.walls.material]) dressMaterial(material, look);
     this.lips.material.color.set(look.lip);
-    lighting.heated.value = state.stress && live.skinStress ? 0.92 : 0;
+    lighting.heated.value = state.stress && live.skinStress ? 1 : 0;
   }
   // Materials anew, where the model has come with colours, or they are not to be shown.
   repaint() {
@@ -114,7 +114,7 @@ class Surface {
     for (const g of this.wallGroups) gap[g] = this.wounds.gap(groupVertex[g], live.position);
     const stress = state.stress && live.skinStress, scale = stress ? 1 / inside.range() : 0;
     for (let g = 0; stress && g < groups; g++) heat[g] = stress[groupVertex[g]] * scale;
-    lighting.heated.value = stress ? 0.92 : 0;
+    lighting.heated.value = stress ? 1 : 0;
     this.position.needsUpdate = this.normal.needsUpdate = this.gap.needsUpdate = this.heat.needsUpdate = true;
     if (this.arranged) {
       const { corners: list, position, normal, hot } = this.arranged;
@@ -210,7 +210,7 @@ class Surface {
     this.lips.visible = state.walls && state.skin > 0 && !this.lips.empty;
     this.fillWire();
     this.wire.visible = state.wire && !this.wire.empty;
-    lighting.heated.value = state.stress && live.skinStress ? 0.92 : 0;
+    lighting.heated.value = state.stress && live.skinStress ? 1 : 0;
   }
   // The first triangle that a ray meets, in shown coordinates: { slot, bary, distance, point, normal, skin }; null: none.
   hit(origin, ray) {

@@ -15,8 +15,8 @@ enum class Kind : std::uint8_t { state = 1, delta = 2, frame = 3, graph = 4, not
 struct Content {
   std::uint32_t sequence = 0;
   bool nodes = false, stress = false;
-  bool rest = false;        ///< places in the material, and colours, of what is new; stress at vertices
   std::uint64_t taken = 0;  ///< number of the page's last input in the snapshot
+  bool rest = false;        ///< places in the material, and colours, of what is new; stress at vertices
 };
 
 /// STATE: everything, for a page that knows nothing.

@@ -39,8 +39,8 @@ std::optional<std::string> PageView::next(const std::shared_ptr<const Snapshot>&
   const Content content{.sequence = ++sequence_,
                         .nodes = nodes,
                         .stress = stress,
-                        .rest = rest_,
-                        .taken = taken == s.taken.end() ? 0 : taken->second};
+                        .taken = taken == s.taken.end() ? 0 : taken->second,
+                        .rest = rest_};
   const bool knows = known_ && scene_ == s.scene;  // another scene where another model was opened
   std::string message = knows ? encode_frame(s, *known_, content) : encode_state(s, content);
   known_ = s.topology;

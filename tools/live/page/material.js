@@ -3,6 +3,7 @@ const groundPlane = { value: new THREE.Vector4(0, 0, 0, 1e3) };  // in the eye's
 const lighting = {
   up: { value: new THREE.Vector3(0, 0, 1) }, sun: { value: new THREE.Vector3(0, 0, 1) },  // directions in the eye's coordinates
   axis: { value: new THREE.Vector3(1, 0, 0) }, vertical: { value: new THREE.Vector3(0, 0, 1) },  // of the body at rest
+  covered: { value: 1 },  // how opaque the skin is
   heated: { value: 0 },  // 1: the stress is painted on the surface
 };
 const floats = (list) => `vec3(${list.map((x) => Number(x).toFixed(4)).join(", ")})`;
@@ -12,7 +13,7 @@ const softShader = {
   vertex: "vRest = rest; vGap = gap; vHeat = heat;\n#include <begin_vertex>",
   head: `
     varying vec3 vRest; varying float vGap; varying float vHeat;
-    uniform vec3 glow, upEye, sunEye, softness; uniform vec4 groundPlane; uniform float wet, heated;
+    uniform vec3 glow, upEye, sunEye, softness; uniform vec4 groundPlane; uniform float wet, heated, covered;
     ${depthShader}
     ${solidTextures}
     vec3 heatColor(float t) {
@@ -54,8 +55,8 @@ const softShader = {
     float height = dot(-vViewPosition, groundPlane.xyz) + groundPlane.w;
     float open = mix(0.72, 1.0, smoothstep(0.0, 0.42, height + 0.25 * max(0.0, dot(normal, groundPlane.xyz))));
     #ifdef WALL
-      // What a wound that is vGap wide leaves to see of the sky, this far below the skin.
-      open *= mix(0.22, 1.0, vGap / sqrt(vGap * vGap + 0.5 * depth * depth + 1e-8));
+      // What a wound that is vGap wide leaves to see of the sky, this far below the skin, as far as that is opaque.
+      open *= mix(1.0, mix(0.22, 1.0, vGap / sqrt(vGap * vGap + 0.5 * depth * depth + 1e-8)), covered);
     #endif
     outgoingLight *= open;
     #ifdef COATED
@@ -71,7 +72,7 @@ const softShader = {
 function compileSoft(shader) {
   const { own } = this.userData;
   Object.assign(shader.uniforms, {
-    glow: { value: own.glow }, softness: { value: own.softness }, wet: own.wet, groundPlane, heated: lighting.heated,
+    glow: { value: own.glow }, softness: { value: own.softness }, wet: own.wet, groundPlane, heated: lighting.heated, covered: lighting.covered,
     upEye: lighting.up, sunEye: lighting.sun, solidAxis: lighting.axis, solidUp: lighting.vertical,
     depthMap: depthField.map, depthBox: depthField.box, depthRange: depthField.range,
   });

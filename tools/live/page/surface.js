@@ -210,7 +210,7 @@ class Surface {
     this.lips.visible = state.walls && state.skin > 0 && !this.lips.empty;
     this.fillWire();
     this.wire.visible = state.wire && !this.wire.empty;
-    lighting.heated.value = state.stress && live.skinStress ? 1 : 0;
+    lighting.heated.value = state.stress && live.skinStress ? 1 : 0, lighting.covered.value = state.skin;
   }
   // The first triangle that a ray meets, in shown coordinates: { slot, bary, distance, point, normal, skin }; null: none.
   hit(origin, ray) {

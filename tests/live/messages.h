@@ -27,6 +27,8 @@ inline std::vector<std::string> sample_messages() {
       R"({"grab":{"id":6,"phase":"begin","input":23,"held":2,"to":[1,2,3]}})",
       R"({"grab":{"id":6,"phase":"hold","input":24,"held":2,"to":[1,2,3]}})",
       R"({"redo":true})",
+      R"({"show":"apple"})",
+      R"({"want":{"rest":true}})",
       R"({"break":{"face":12,"bary":[0.5,0.25,0.25],"cells":9}})",
   };
 }

@@ -232,7 +232,10 @@ Command command_of(const std::string& key, const Json& value) {
   }
   if (key == "want")
     return inner(value, key, [](Table& t) {
-      return Want{t.optional_flag("nodes"), t.optional_flag("stress"), t.optional_flag("graph").value_or(false)};
+      return Want{.nodes = t.optional_flag("nodes"),
+                  .stress = t.optional_flag("stress"),
+                  .rest = t.optional_flag("rest"),
+                  .graph = t.optional_flag("graph").value_or(false)};
     });
   if (key == "knife") return inner(value, key, knife_of);
   if (key == "scalpel") return inner(value, key, scalpel_of);
@@ -240,6 +243,10 @@ Command command_of(const std::string& key, const Json& value) {
   if (key == "pin") return inner(value, key, pin_of);
   if (key == "break") return inner(value, key, blow_of);
   if (key == "set") return inner(value, key, set_of);
+  if (key == "show") {
+    if (!value.is_string()) throw BadMessage("'show' must be the name of a body of the gallery");
+    return Show{value.get<std::string>()};
+  }
   if (key == "undo") return sign<Undo>(value, key);
   if (key == "redo") return sign<Redo>(value, key);
   if (key == "reset") return sign<Reset>(value, key);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -27,9 +28,10 @@ enum class Phase { begin, move, end, hold };
 struct Acknowledge {
   std::uint32_t sequence = 0;
 };
-/// Data that frames are to hold in addition to the surface. `graph`: once.
+/// Data that frames are to hold in addition to the surface. `graph`: once. `rest`: places in the
+/// material and colours, with what changes.
 struct Want {
-  std::optional<bool> nodes, stress;
+  std::optional<bool> nodes, stress, rest;
   bool graph = false;
 };
 /// Where an edge is: it begins at `origin`, along `direction` (unit).
@@ -81,6 +83,10 @@ struct Set {
   std::optional<double> young, friction, damping;
   std::optional<geo::Vec3> gravity;
 };
+/// A body of the gallery, shown in place of the present one.
+struct Show {
+  std::string name;
+};
 struct Undo {};
 struct Redo {};
 struct Reset {};
@@ -89,7 +95,7 @@ struct Pause {
 };
 struct Step {};
 
-using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Blow, Set, Undo, Redo, Reset, Pause, Step>;
+using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Blow, Set, Show, Undo, Redo, Reset, Pause, Step>;
 
 /// Reads a message. Throws BadMessage where it is longer than longest_message, no JSON, of no known
 /// kind, has unknown or missing keys, or values out of range. Throws nothing else.

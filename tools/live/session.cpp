@@ -30,6 +30,7 @@ Session::Session(const sim::Setup& setup, const geo::Progress& progress, const S
       bounds_(bounds),
       start_(sim::first_checkpoint(setup, progress)),
       run_(sim::run_from(setup.scene, start_)),
+      view_(Painter(setup.models.all, setup.materials)),
       hands_(run_, view_, geo::bounding_box(setup.models.all).diagonal()),
       history_(bounds.undo),
       faces_(run_.body().surface.face_count()) {
@@ -135,6 +136,7 @@ void Session::resume(const geo::Scene& scene, const std::string& checkpoint, int
   if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
   hands_.begin_anew(std::move(beside.lasting));
   view_.clear();
+  stress_.clear();
   // The old run goes first. Otherwise the new one fills the gaps that the old one leaves, and keeps
   // the pages around them.
   { const geo::Simulation ended = std::move(run_); }
@@ -237,12 +239,15 @@ geo::Scene Session::recording() const {
   return scene;
 }
 
-void Session::show(Snapshot& snapshot) {
+void Session::show(Snapshot& snapshot, bool stress) {
   view_.update(run_);
   view_.show(snapshot);
   snapshot.time = run_.state().time;
   snapshot.node_count = run_.body().nodes.size();
   snapshot.taken = taken_;
+  if (!stress) return;
+  snapshot.stress = geo::von_mises_stress(run_.solid(), run_.body().nodes, run_.state().motion);
+  snapshot.skin_stress = stress_.at_vertices(run_, snapshot.stress, view_);
 }
 
 std::vector<std::pair<std::vector<geo::Vec3>, double>> Session::edges() const {

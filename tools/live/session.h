@@ -16,6 +16,7 @@
 #include "live/piece_count.h"
 #include "live/scene_mark.h"
 #include "live/snapshot.h"
+#include "live/surface_stress.h"
 #include "live/surface_view.h"
 #include "live/undo.h"
 #include "sim/setup.h"
@@ -87,8 +88,10 @@ class Session {
   const geo::Scene& original() const { return setup_.scene; }
   /// The scene that gives this run, with everything that hands did.
   geo::Scene recording() const;
-  /// Fills positions, topology and inputs taken.
-  void show(Snapshot& snapshot);
+  /// Fills positions, topology, colours and inputs taken; stress of nodes and skin where asked for.
+  void show(Snapshot& snapshot, bool stress = false);
+  /// The models and their materials.
+  const sim::Setup& setup() const { return setup_; }
   /// The hands in the run.
   const Hands& hands() const { return hands_; }
   /// The strokes that can be undone and made again.
@@ -126,6 +129,7 @@ class Session {
   std::string start_;  // checkpoint of frame 0
   geo::Simulation run_;
   SurfaceView view_;
+  SurfaceStress stress_;
   Hands hands_;
   StrokeHistory history_;
   PieceCount pieces_;

@@ -4,7 +4,7 @@ bodies: each body of the gallery is opened by its button, and has its look.
 solids: what is inside of a cake, and of flesh, and the dark of a closed wound.
 images: an OBJ that is dropped with its MTL and image has its colours, which a control takes away.
 stress: it is painted on the surface, where the body is drawn.
-lasso: a closed line cuts a part out; a short one is refused.
+lasso: closed lines of six kinds cut a part out, each by one step of undo; a short one is refused.
 clamp: two places are drawn together, and let go.
 follow: the view goes with a piece that is drawn away.
 record: an animated GLB has the frames that were shown, in three.js, too, and Khronos' validator finds nothing; a video.
@@ -181,14 +181,21 @@ def lasso():
     keep(hand, "whole")
     hand.key("a")
     x, y = hand.place([0.5, 0.0, 0.5])
-    circle = [[x + 50 * math.cos(t * math.pi / 12), y + 50 * math.sin(t * math.pi / 12)] for t in range(24)]
+    round_ = lambda turn, begin, size, places: [[x + size * math.cos(begin + turn * i * math.pi / 12), y + size * math.sin(begin + turn * i * math.pi / 12)] for i in range(places)]
     hand.drag([[x, y], [x + 6, y], [x + 12, y], [x + 6, y + 6]])
     hand.wait("$('notice').textContent === 'Draw a line around what is to be cut out.'")
-    hand.drag(circle)
-    hand.wait("live.stats.waiting.length === 1")
-    hand.finish()
-    stats = hand.stats()
-    check(f"lasso: {stats['pieces']} pieces", stats["pieces"] >= 2 and stats["undo"] == 1)
+    lines = {"a circle": round_(1, 0, 50, 24), "a circle the other way round": round_(-1, 2, 50, 24), "a small circle": round_(1, 0, 25, 24), "an open line": round_(1, 0.3, 45, 20),
+             "a line that passes its begin": round_(-1, 2, 45, 27), "a square": along([x - 45, y - 45], [x + 45, y - 45], [x + 45, y + 45], [x - 45, y + 45], [x - 45, y - 42], steps=8)}
+    for name, line in lines.items():
+        hand.drag(line)
+        hand.wait("live.stats.waiting.length === 2")
+        hand.finish()
+        stats = hand.stats()
+        check(f"lasso: {name}: {stats['pieces']} pieces, {stats['undo']} to undo", stats["pieces"] == 2 and stats["undo"] == 1)
+        if name == "a square":
+            break
+        hand.key("u")
+        hand.wait("live.stats.undo === 0 && live.stats.pieces === 1 && live.frame === null")
     hand.wait("hand.ghosts.length === 0")
     check(f"lasso: {changed(hand, 'whole'):.4f} of the picture differ", changed(hand, "whole") > 0.002)
     hand.key("u")

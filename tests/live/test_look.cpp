@@ -1,8 +1,10 @@
-// What a page is told of the material: places at rest, colours, stress at the skin; bodies of the gallery.
+// A page receives places at rest, colours, and stress at the skin; the gallery has ten whole bodies.
+#include <unistd.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include <kerf/check.h>
@@ -19,6 +21,8 @@
 namespace live {
 namespace {
 
+namespace fs = std::filesystem;
+
 Snapshot shown(Session& session, bool stress = false) {
   static std::uint64_t number = 0;
   Snapshot s;
@@ -28,6 +32,25 @@ Snapshot shown(Session& session, bool stress = false) {
   s.statistics = statistics_text(session, {});
   return s;
 }
+
+// An empty folder that is the program's own for a while.
+class CurrentFolder {
+ public:
+  CurrentFolder()
+      : before_(fs::current_path()), path_(fs::temp_directory_path() / ("kerf-test-" + std::to_string(getpid()))) {
+    fs::create_directory(path_);
+    fs::current_path(path_);
+  }
+  CurrentFolder(const CurrentFolder&) = delete;
+  CurrentFolder& operator=(const CurrentFolder&) = delete;
+  ~CurrentFolder() {
+    fs::current_path(before_);
+    fs::remove_all(path_);
+  }
+
+ private:
+  fs::path before_, path_;
+};
 
 // A block whose corners are as red as x is large.
 geo::TriangleMesh painted_block() {
@@ -173,7 +196,7 @@ TEST_CASE("an OBJ that comes with its materials and image has both, also in a sa
     obj += "\n";
   }
   const BesideFile library{"box.mtl", "newmtl red\nKd 1 1 1\nmap_Kd red.png\n"};
-  const BareModel model = bare_model("box.obj", obj, 60, 'z', {}, {library, {"red.png", image}});
+  const BareModel model = bare_model("box.obj", obj, 60, 'z', {}, std::vector<BesideFile>{library, {"red.png", image}});
   CHECK(model.notes.empty());
   REQUIRE(model.setup.materials.glb);
   Session session(model.setup, {});
@@ -189,11 +212,18 @@ TEST_CASE("an OBJ that comes with its materials and image has both, also in a sa
     CHECK(paint.at == std::array<std::array<float, 2>, 3>{{{0, 0}, {1, 0}, {1, 1}}});
   }
   CHECK(saved_file(session, "glb", {}).find(image) != std::string::npos);
-  const BareModel bare = bare_model("box.obj", obj, 60, 'z', {}, {library});
+  const BareModel bare = bare_model("box.obj", obj, 60, 'z', {}, std::vector<BesideFile>{library});
   REQUIRE(bare.notes.size() == 1);
   CHECK(bare.notes[0] == "box.obj: left out: textures not in its folder: red.png");
+  // A model that came alone has none of the files that are in the program's folder.
+  const CurrentFolder here;
+  geo::write_all(library.name, [&](std::ostream& out) { out << library.bytes; });
+  const BareModel alone = bare_model("box.obj", obj, 60, 'z', {}, std::vector<BesideFile>{});
+  REQUIRE(alone.notes.size() == 1);
+  CHECK(alone.notes[0].starts_with("box.obj: names box.mtl, not in its folder"));
+  CHECK(bare_model("box.obj", obj, 60, 'z', {}).setup.materials.glb);
   for (const std::string name : {"../evil.mtl", "a/b", "..", "."})
-    CHECK_THROWS_AS(bare_model("box.obj", obj, 60, 'z', {}, {{name, "x"}}), geo::InputError);
+    CHECK_THROWS_AS(bare_model("box.obj", obj, 60, 'z', {}, std::vector<BesideFile>{{name, "x"}}), geo::InputError);
 }
 
 }  // namespace live

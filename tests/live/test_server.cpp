@@ -380,7 +380,7 @@ TEST_CASE("a model is opened for the page itself only, and what is wrong with it
     auto& open = std::get<Open>(requests[0].what);
     name = open.model.name;
     bytes = open.model.bytes;
-    beside = open.model.beside;
+    beside = open.model.beside.value_or(std::vector<BesideFile>{});
     open.answer({});
     requests = wait_for<Open>(s.inbox, 1);
     std::get<Open>(requests[0].what).answer({.error = "a.off: is open"});

@@ -89,10 +89,10 @@ char up_axis(const std::string& name) {
 }
 
 BareModel bare_model(const std::string& path, const std::string& bytes, int nodes, char up,
-                     const geo::SceneOverrides& overrides, const std::vector<BesideFile>& beside) {
+                     const geo::SceneOverrides& overrides, const std::optional<std::vector<BesideFile>>& beside) {
   BareModel result;
   const std::string name = fs::path(path).filename().string();
-  geo::SurfaceFile file = beside.empty() ? tool::parse_solid(bytes, path) : parse_with(name, bytes, beside);
+  geo::SurfaceFile file = beside ? parse_with(name, bytes, *beside) : tool::parse_solid(bytes, path);
   for (const std::string& note : file.notes) result.notes.push_back(name + ": " + note);
   geo::TriangleMesh& mesh = file.mesh;
   tool::require_whole(mesh, path, "a scene begins with whole models");

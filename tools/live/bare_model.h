@@ -1,6 +1,7 @@
 // A scene for a model that comes without one.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ struct BareModel {
 
 /// A soft body of `nodes` nodes that stands on the ground, in gravity, with self-contact. Lengths
 /// and stiffness are scaled to the model's size, so that it sags little, whatever its units. `up`:
-/// the vertical axis, 'y' or 'z'. `path` names the file that the bytes are of; `beside` has the files
-/// that it names, where these are not in its folder. Throws geo::InputError.
+/// the vertical axis, 'y' or 'z'. `path` names the file that the bytes are of. `beside` has the
+/// files that came with it; nothing: those that it names are in its folder. Throws geo::InputError.
 BareModel bare_model(const std::string& path, const std::string& bytes, int nodes, char up,
-                     const geo::SceneOverrides& overrides, const std::vector<BesideFile>& beside = {});
+                     const geo::SceneOverrides& overrides, const std::optional<std::vector<BesideFile>>& beside = {});
 
 }  // namespace live

@@ -1,4 +1,4 @@
-// Coordinates are rounded to single precision, so that the files are small and the same on every machine.
+// Coordinates are rounded to single precision: the files are small, and the same on every machine.
 #include "live/gallery.h"
 
 #include <algorithm>

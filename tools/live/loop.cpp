@@ -3,6 +3,7 @@
 #include "live/loop.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <thread>
 #include <utility>
@@ -132,7 +133,8 @@ struct Turns::Impl {
         if (shown_.model.bytes.empty()) throw BadMessage("a scene names its models, which are files of their own");
         save.answer({.bytes = shown_.model.bytes, .name = shown_.model.name});
       } else {
-        save.answer({.bytes = saved_file(session(), save.format, {}), .name = shown_.name + "." + save.format});
+        const std::string folder = shown_.from_page ? std::filesystem::current_path().string() : "";
+        save.answer({.bytes = saved_file(session(), save.format, folder), .name = shown_.name + "." + save.format});
       }
     } catch (const std::exception& e) {
       save.answer({.error = e.what()});
@@ -153,6 +155,7 @@ struct Turns::Impl {
     if (!options_.open) throw BadMessage("no model can be opened here");
     Shown opened = options_.open(model);
     opened.model = {.name = std::move(model.name), .bytes = std::move(model.bytes)};
+    opened.from_page = true;
     shown_ = std::move(opened);
     release_free_memory();
     begin();

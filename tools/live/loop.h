@@ -23,6 +23,7 @@ struct Shown {
   bool waits = false;
   std::vector<std::string> notes = {};  ///< sentences for each page that comes
   ModelFile model = {};                 ///< as it was opened, without files beside it; empty: a scene
+  bool from_page = false;               ///< the model is no file here: a recording names it without a folder
 };
 
 struct LoopOptions {

@@ -1,6 +1,7 @@
 // A model as a page opens it, with the files that it names.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ struct BesideFile {
 
 struct ModelFile {
   std::string name = {}, bytes = {};
-  std::vector<BesideFile> beside = {};
-  char up = 0;  ///< vertical axis, 'y' or 'z'; 0: it is not known
+  std::optional<std::vector<BesideFile>> beside = {};  ///< that came with it; nothing: they are in its folder
+  char up = 0;                                         ///< vertical axis, 'y' or 'z'; 0: it is not known
 };
 
 }  // namespace live

@@ -29,7 +29,7 @@ class PageView {
   void ask_graph(std::uint64_t number) { graph_asked_ = number; }
 
   bool nodes = false, stress = false;  ///< whether frames have these
-  /// Whether the page is told places in the material, and colours. It is then sent all anew.
+  /// Whether the page receives places in the material, and colours. All is then sent anew.
   void want_rest(bool on) {
     if (std::exchange(rest_, on) != on) known_ = nullptr;
   }

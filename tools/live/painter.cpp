@@ -1,4 +1,4 @@
-// Attributes follow the triangles of a cut surface by transfer_attributes(), for new triangles only.
+// Attributes follow the triangles of a cut surface by transfer_attributes(), for new ones only.
 #include "live/painter.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The colours of a model on a page: a place in an image and a tint for each corner of its triangles,
-// through all cuts.
+// The colours of a model on a page: a place in an image and a tint for each corner of its
+// triangles, through all cuts.
 #pragma once
 
 #include <array>

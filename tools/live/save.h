@@ -7,7 +7,7 @@
 
 namespace live {
 
-/// What files are saved as, for messages.
+/// The formats of saved files, for messages.
 constexpr const char* save_formats = "as=kerf, ply, glb, stl, toml or model";
 /// Whether a file is saved so.
 bool is_save_format(const std::string& format);

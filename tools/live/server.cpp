@@ -93,6 +93,7 @@ std::optional<ModelFile> model_of(std::string_view target, std::string body) {
   constexpr std::string_view mark = "&beside=";
   const auto begin = target.find("name=") + 5, end = target.find(mark, begin);
   ModelFile model{.name = unescaped(target.substr(begin, end - begin))};
+  std::vector<BesideFile>& beside = model.beside.emplace();
   std::vector<std::size_t> sizes;
   std::size_t total = 0;
   for (auto at = end; at != target.npos; at = target.find(mark, at + 1)) {
@@ -102,13 +103,13 @@ std::optional<ModelFile> model_of(std::string_view target, std::string body) {
     const auto* last = rest.data() + rest.size();
     if (colon == rest.npos || std::from_chars(rest.data() + colon + 1, last, size).ptr != last || size > body.size())
       return {};
-    model.beside.push_back({unescaped(rest.substr(0, colon)), {}});
+    beside.push_back({unescaped(rest.substr(0, colon)), {}});
     sizes.push_back(size);
     total += size;
   }
   if (total > body.size()) return {};
   std::size_t at = body.size() - total;
-  for (std::size_t i = 0; i < sizes.size(); at += sizes[i++]) model.beside[i].bytes = body.substr(at, sizes[i]);
+  for (std::size_t i = 0; i < sizes.size(); at += sizes[i++]) beside[i].bytes = body.substr(at, sizes[i]);
   body.resize(body.size() - total);
   model.bytes = std::move(body);
   return model;

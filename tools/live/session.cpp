@@ -205,7 +205,14 @@ std::string Session::advance(bool whole) {
     change_run({.gravity = *withheld_});
     withheld_.reset();
   }
-  const auto save = [&] { history_.add({.mark = scene().mark(run_.state()), .beside = beside()}, state_bytes()); };
+  bool saved = false;  // strokes that begin in one frame are one step of undo
+  const auto save = [&] {
+    if (saved)
+      history_.join();
+    else
+      history_.add({.mark = scene().mark(run_.state()), .beside = beside()}, state_bytes());
+    saved = true;
+  };
   hands_.move_on(whole, save);
   try {
     stats_ = run_.advance_frame();

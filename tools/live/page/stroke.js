@@ -162,14 +162,19 @@ function endStroke() {
   s.ghost.end();
   redraw();
 }
-// A path that is known only when it is drawn: all of it at once, as a stroke of the knife. False: there is none.
+// Paths that are known only when they are drawn, as strokes of the knife that begin together. The last one is the stroke; its end is sent by the caller.
+// False: there is none.
 function sendClosed(s) {
-  const path = s.tool.closed();
-  if (!path) return false;
+  const paths = s.tool.closed();
+  if (!paths) return false;
   s.kind = "knife", s.tool.late = false;
-  sendInput(s.kind, { id: s.id, phase: "begin", ...path[0] });
-  s.pending = path.slice(1), s.last = path[path.length - 1];
-  passOn(s);
+  const ids = paths.map((_, i) => (i === 0 ? s.id : ++strokes));
+  paths.forEach((path, i) => sendInput(s.kind, { id: ids[i], phase: "begin", ...path[0] }));
+  paths.forEach((path, i) => {
+    s.id = ids[i], s.pending = path.slice(1), s.last = path[path.length - 1];
+    passOn(s);
+    if (i + 1 < paths.length) sendInput(s.kind, { id: s.id, phase: "end", ...s.last });
+  });
   return true;
 }
 function pinAt(x, y) {

@@ -1,4 +1,4 @@
-// A page receives places at rest, colours, and stress at the skin; the gallery has ten whole bodies.
+// A page receives places at rest, colours, and stress at the skin; the gallery has whole bodies.
 #include <unistd.h>
 #include <catch2/catch.hpp>
 

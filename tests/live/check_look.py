@@ -1,6 +1,7 @@
 """check_look.py TOOLS_DIR SCENES_DIR MODELS_DIR CASE...: what kerf-live's page shows of a body, and tools beside the knife, by real pointer and key events.
 
 bodies: each body of the gallery is opened by its button, and has its look.
+gape: a scalpel's cut in the tight skin of a slab opens, and stays a line without tension; resistance and dullness; the recording has all.
 solids: what is inside of a cake, and of flesh, and the dark of a closed wound.
 images: an OBJ that is dropped with its MTL and image has its colours, which a control takes away.
 stress: it is painted on the surface, where the body is drawn.
@@ -10,9 +11,9 @@ follow: the view goes with a piece that is drawn away.
 record: an animated GLB has the frames that were shown, in three.js, too, and Khronos' validator finds nothing; a video.
 twice: a cut at the place of one before leaves no bridge.
 """
-import base64, json, math, os, struct, subprocess, zlib
+import base64, filecmp, glob, json, math, os, struct, subprocess, zlib
 from hand import along
-from page_session import Session, check, hand, models, run, tools
+from page_session import Session, check, hand, kerf, models, run, tools
 from pictures import changed, count, keep
 
 GROUPS = "surface.position.array.subarray(0, 3 * surface.corners.groups)"
@@ -97,6 +98,66 @@ def solids():
     opened = count(hand, bright)
     check(f"solids: {closed} pixels of a closed wound are bright, {opened} of an open one", opened > 300 and closed < 0.5 * opened)
     end(session, "solids")
+
+
+# The widest place of wounds at the skin, in the distance of nodes.
+GAPE = "(draw(), Math.max(0, ...[...surface.wallGroups].map((g) => surface.gap.array[g])) * about.unit / live.told.spacing)"
+
+
+def slider(name, keys):
+    """Sets a slider of the panel by keys."""
+    hand.button("#menu")
+    hand.run(f"$('{name}').focus()")
+    for key, code in keys:
+        hand.send("Input.dispatchKeyEvent", type="keyDown", key=key, code=key, windowsVirtualKeyCode=code)
+        hand.send("Input.dispatchKeyEvent", type="keyUp", key=key, code=key, windowsVirtualKeyCode=code)
+    hand.button("#menu")
+
+
+def incision():
+    """A scalpel's cut along the middle of the slab, half a second later; how far it gapes."""
+    hand.tool("scalpel")
+    lo, hi = hand.run("live.told.box")
+    top, y = hi[2] - hand.run("live.told.spacing"), (lo[1] + hi[1]) / 2
+    begin, end = ([lo[0] + share * (hi[0] - lo[0]), y, top] for share in (0.3, 0.7))
+    hand.drag(along(hand.place(begin), hand.place(end), steps=16), each=hand.step)
+    hand.finish()
+    for _ in range(30):
+        hand.step()
+    hand.wait("hand.ghosts.length === 0")
+    check(f"gape: {hand.stats()}", hand.stats()["pieces"] == 1 and hand.stats()["undo"] == 1)
+    return hand.run(GAPE)
+
+
+def gape():
+    session = model("polyp")
+    body("tissue")
+    hand.run("set('depth', 0.25); view.elevation = 0.9; 1")
+    pause()
+    keep(hand, "whole")
+    wide = incision()
+    differ = changed(hand, "whole")
+    check(f"gape: a wound in a tight skin is {wide:.2f} spacings wide, {differ:.4f} of the picture differ", wide > 0.3 and differ > 0.004)
+    slider("tension", [("Home", 36)])
+    hand.wait("live.stats.set.tension === 1 && live.stats.undo === 0", seconds=120)
+    hand.run("view.elevation = 0.9")
+    keep(hand, "whole")
+    shut = incision()
+    check(f"gape: without tension {shut:.2f} instead of {wide:.2f}, {changed(hand, 'whole'):.4f} of the picture differ", shut < 0.3 * wide and changed(hand, "whole") < 0.6 * differ)
+    print(f"gape: {wide:.3f} node spacings, {shut:.3f} without tension; pictures {differ:.4f}, {changed(hand, 'whole'):.4f}", flush=True)
+    slider("resistance", [("End", 35)])
+    slider("dullness", [("End", 35)])
+    hand.wait("live.stats.set.resistance > 0 && live.stats.set.dullness === 1")
+    slider("tension", [("End", 35)])
+    hand.wait("live.stats.set.tension > 1.5 && live.stats.undo === 0", seconds=120)
+    check("gape: resistance and friction are lost", hand.stats()["set"]["resistance"] > 0 and hand.stats()["set"]["dullness"] == 1)
+    incision()
+    # The recording has them all, and gives the same frame.
+    os.mkdir("again")
+    session.program.save("model", "again/tissue.ply"), session.program.save("toml", "again/tissue.toml"), session.program.save("ply", "shown.ply")
+    end(session, "gape")
+    kerf("kerf-sim", "-q", "again/tissue.toml", "-o", "again/run")
+    check("gape: the replay's last frame is not the one shown", filecmp.cmp(sorted(glob.glob("again/run/frames/*.ply"))[-1], "shown.ply", shallow=False))
 
 
 def png(pixels):

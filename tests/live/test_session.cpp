@@ -460,6 +460,26 @@ TEST_CASE("strokes that begin in one frame are one step of undo, whichever of th
   }
 }
 
+TEST_CASE("a tight skin is a new beginning; edges are as dull as was said when they began to cut") {
+  Session session(setup(), {});
+  const std::string loose = surface_bytes(session.run());
+  cut(session, 1, -0.2, 0.4);
+  session.obey(Set{.resistance = 20, .dullness = 0.4, .tension = 1.3});
+  CHECK(session.history().strokes() == 0);
+  CHECK(session.run().state().frame == 0);
+  CHECK(session.original().prestretch.skin == 1.3);
+  cut(session, 1, -0.2, 0.4);
+  CHECK(session.recording().blades.back().resistance == 20);
+  CHECK(session.recording().blades.back().friction == 0.4);
+  CHECK(replayed(session) == surface_bytes(session.run()));
+  session.withhold_weight();
+  CHECK(!session.is_weightless());  // it rests in its weight
+  session.obey(Set{.resistance = 0, .dullness = 0, .tension = 1});
+  CHECK(surface_bytes(session.run()) == loose);
+  cut(session, 1, -0.2, 0.4);
+  CHECK(session.recording().blades.back().resistance == 0);
+}
+
 TEST_CASE("redo makes undone cuts again, to the bit, with all that hands did then") {
   Session session(setup(), {});
   CHECK_THROWS_AS(session.redo(), BadMessage);

@@ -203,10 +203,14 @@ Blow blow_of(Table& t) {
 }
 
 Set set_of(Table& t) {
+  constexpr double most_tension = 2;  // living skin bears about half of it
   return {.young = t.optional_number("young", 1, 1e12),
           .friction = t.optional_number("friction", 0, 1),
           .damping = t.optional_number("damping", 0, 1e3),
-          .gravity = t.optional_point("gravity")};
+          .gravity = t.optional_point("gravity"),
+          .resistance = t.optional_number("resistance", 0, 1e9),
+          .dullness = t.optional_number("dullness", 0, 2),
+          .tension = t.optional_number("tension", 1, most_tension)};
 }
 
 template <class Read>

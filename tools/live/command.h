@@ -78,10 +78,13 @@ struct Blow {
   Spot spot;
   int cells = 0;  ///< of the pattern: about as many parts, or fewer
 };
-/// Values of the scene.
+/// Values of the scene, of the edges to come, and of the skin.
 struct Set {
-  std::optional<double> young, friction, damping;
-  std::optional<geo::Vec3> gravity;
+  std::optional<double> young = {}, friction = {}, damping = {};
+  std::optional<geo::Vec3> gravity = {};
+  std::optional<double> resistance = {};  ///< of the material to edges, J / model unit²
+  std::optional<double> dullness = {};    ///< friction of edges: Coulomb's coefficient
+  std::optional<double> tension = {};     ///< stretch of the skin, 1: none. The body begins anew
 };
 /// A body of the gallery, shown in place of the present one.
 struct Show {

@@ -41,6 +41,7 @@ struct Entry {
   const char* name;
   char up;
   std::function<geo::TriangleMesh()> make;
+  double tension = 1;
 };
 
 const std::vector<Entry>& entries() {
@@ -56,7 +57,8 @@ const std::vector<Entry>& entries() {
       {"tissue", 'z',
        [] {
          return geo::make_block({2, 1.6, 0.5}, edge);
-       }},
+       },
+       1.35},
       {"board", 'z',
        [] {
          return geo::make_block({2.4, 0.8, 0.3}, edge);
@@ -84,7 +86,7 @@ ModelFile gallery_model(const std::string& name) {
   for (geo::Vec3& p : mesh.vertices) p = p.cast<float>().cast<double>();
   std::ostringstream out;
   geo::write_ply(out, mesh);
-  return {.name = name + ".ply", .bytes = std::move(out).str(), .up = at->up};
+  return {.name = name + ".ply", .bytes = std::move(out).str(), .tension = at->tension, .up = at->up};
 }
 
 }  // namespace live

@@ -154,6 +154,7 @@ struct Turns::Impl {
   void show(ModelFile model) {
     if (!options_.open) throw BadMessage("no model can be opened here");
     Shown opened = options_.open(model);
+    if (model.tension > 1) opened.session->tighten(model.tension);
     opened.model = {.name = std::move(model.name), .bytes = std::move(model.bytes)};
     opened.from_page = true;
     shown_ = std::move(opened);
@@ -190,6 +191,10 @@ struct Turns::Impl {
   }
   bool obey_command(ClientId, const Set& c) {
     session().obey(c);
+    if (c.tension) {
+      restart();
+      wait();
+    }
     return true;
   }
   bool obey_command(ClientId, const Blow& c) {

@@ -15,6 +15,7 @@ struct BesideFile {
 struct ModelFile {
   std::string name = {}, bytes = {};
   std::optional<std::vector<BesideFile>> beside = {};  ///< that came with it; nothing: they are in its folder
+  double tension = 1;                                  ///< stretch of its skin
   char up = 0;                                         ///< vertical axis, 'y' or 'z'; 0: it is not known
 };
 

@@ -27,6 +27,7 @@ void adapt_scene(geo::Scene& scene, double rate, bool blades) {
 
 Session::Session(const sim::Setup& setup, const geo::Progress& progress, const SessionBounds& bounds)
     : setup_(setup),
+      loaded_(setup.scene.loaded),
       bounds_(bounds),
       start_(sim::first_checkpoint(setup, progress)),
       run_(sim::run_from(setup.scene, start_)),
@@ -63,7 +64,34 @@ void Session::obey(const Pin& pin) {
   hands_.obey(pin);
 }
 
+void Session::tighten(double stretch) {
+  sim::Setup tight = setup_;
+  const std::vector<double>& spacing = run_.body().nodes.spacing;
+  const double depth = *std::max_element(spacing.begin(), spacing.end());
+  const auto set = [&](geo::Prestretch& p) {
+    p.skin = stretch;
+    if (p.depth == 0) p.depth = depth;
+  };
+  set(tight.scene.prestretch);
+  for (geo::SceneBody& body : tight.scene.bodies)
+    if (body.prestretch) set(*body.prestretch);
+  tight.scene.loaded = loaded_ || stretch > 1;
+  try {
+    start_ = sim::first_checkpoint(tight, {});
+  } catch (const geo::InputError& e) {
+    throw BadMessage(e.what());
+  }
+  setup_ = std::move(tight);
+  reset();
+}
+
 void Session::obey(const Set& set) {
+  EdgeKind edges = hands_.edges();
+  edges.resistance = set.resistance.value_or(edges.resistance);
+  edges.friction = set.dullness.value_or(edges.friction);
+  hands_.set_edges(edges);
+  if (set.tension) tighten(*set.tension);
+  if (!set.young && !set.damping && !set.gravity && !set.friction) return;
   if (changes_.size() >= bounds_.changes) throw BadMessage("the recording is full; save it and reset");
   geo::SceneChange change;
   change.young = set.young;
@@ -174,7 +202,7 @@ void Session::redo() {
 }
 
 void Session::withhold_weight() {
-  if (withheld_ || run_.scene().gravity.isZero() || changes_.size() >= bounds_.changes) return;
+  if (withheld_ || setup_.scene.loaded || run_.scene().gravity.isZero() || changes_.size() >= bounds_.changes) return;
   const geo::Vec3 gravity = run_.scene().gravity;
   change_run({.gravity = geo::Vec3(geo::Vec3::Zero())});
   withheld_ = gravity;

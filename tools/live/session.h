@@ -47,6 +47,10 @@ class Session {
   void obey(ClientId page, const Grab& grab);
   void obey(const Pin& pin);
   void obey(const Set& set);
+  /// Begins anew with a skin that is stretched by this factor, 1: not at all, in a layer as deep as
+  /// the nodes are apart. The body keeps its shape until it is cut. Throws BadMessage where it finds
+  /// no rest.
+  void tighten(double stretch);
   /// Likewise. It counts as a stroke that has cut.
   void obey(const Blow& blow);
   /// Goes back to before the last stroke that has cut. Throws BadMessage without one.
@@ -54,7 +58,7 @@ class Session {
   /// Goes to where the last undo left. Throws BadMessage without one, or after a new cut.
   void redo();
   /// Weight acts from when no stroke is in the body, but not yet: a body at rest without weight
-  /// does not sag under the knife that cuts it first.
+  /// does not sag under the knife that cuts it first. A body that rests in its weight keeps it.
   void withhold_weight();
   /// Begins anew.
   void reset();
@@ -125,6 +129,7 @@ class Session {
   bool end_hands();
 
   sim::Setup setup_;
+  bool loaded_;  // whether the scene says so by itself
   SessionBounds bounds_;
   std::string start_;  // checkpoint of frame 0
   geo::Simulation run_;

@@ -37,12 +37,13 @@ const showDepth = () => $("depth-value").textContent = state.depth >= 1 ? "throu
 const showCells = () => $("cells-value").textContent = String(state.cells);
 
 // Sliders of the material: what the program has, shown unless a hand is on the slider.
-const values = { young: null, gravity: null, friction: null, damping: null };
-const touched = { young: 0, gravity: 0, friction: 0, damping: 0 };
+const values = { young: null, gravity: null, friction: null, damping: null, tension: null, resistance: null, dullness: null };
+const touched = Object.fromEntries(Object.keys(values).map((name) => [name, 0]));
 const logarithmic = { young: true };
-const units = { young: pascals, gravity: (g) => "× " + g.toFixed(2), friction: (f) => f.toFixed(2), damping: (d) => d.toPrecision(2) + " /s" };
+const units = { young: pascals, gravity: (g) => "× " + g.toFixed(2), friction: (f) => f.toFixed(2), damping: (d) => d.toPrecision(2) + " /s",
+  tension: (s) => s < 1.005 ? "none" : "× " + s.toFixed(2), resistance: (r) => r === 0 ? "sharp" : Number(r.toPrecision(2)).toLocaleString("en") + " J/m²", dullness: (d) => d.toFixed(2) };
 function rangeOf(name) {
-  return live.told?.options?.[name] ?? { young: [1e3, 1e7], gravity: [0, 2], friction: [0, 1], damping: [0, 10] }[name];
+  return live.told?.options?.[name] ?? { young: [1e3, 1e7], gravity: [0, 2], friction: [0, 1], damping: [0, 10], tension: [1, 1.6], resistance: [0, 1e4], dullness: [0, 1] }[name];
 }
 function toSlider(name, value) {
   const [lo, hi] = rangeOf(name);
@@ -65,10 +66,11 @@ function showValues(said) {
   const least = said.friction_least ?? said.friction;
   if (performance.now() - touched.friction >= 600 && least !== said.friction) $("friction-value").textContent = [least, said.friction].map((f) => Number(f.toFixed(2))).join("–");
 }
-function slide(name) {
+function slide(name, last = false) {
   const value = fromSlider(name, Number($(name).value));
   touched[name] = performance.now();
   $(name + "-value").textContent = units[name](value);
+  if (name === "tension" && !last) return;  // each value is a new beginning
   send({ set: { [name]: name === "gravity" ? live.told.gravity.map((x) => x * value) : value } });
 }
 
@@ -149,6 +151,7 @@ function listenToControls() {
     control.addEventListener("input", () => set(key, control.type === "checkbox" ? control.checked : key === "look" ? control.value : Number(control.value)));
   }
   for (const name of Object.keys(values)) $(name).addEventListener("input", () => slide(name));
+  $("tension").addEventListener("change", () => slide("tension", true));
   $("wait").addEventListener("click", () => wire.open || connect());
 }
 

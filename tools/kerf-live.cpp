@@ -42,10 +42,10 @@ live::Shown shown(const Command& command, const std::string& path, live::BareMod
   return shown;
 }
 
-live::BareModel read_model(const Command& command, const std::string& path, const std::string& bytes,
-                           const tool::Tool& t) {
+live::BareModel read_model(const Command& command, const live::ModelFile& file, const tool::Tool& t) {
+  const char up = file.up ? file.up : command.up[0];
   live::BareModel model =
-      live::bare_model(path, bytes, command.nodes, command.up[0], sim::parse_overrides(command.settings));
+      live::bare_model(file.name, file.bytes, command.nodes, up, sim::parse_overrides(command.settings), file.beside);
   for (const std::string& note : model.notes) t.say(t.name() + ": " + note);
   return model;
 }
@@ -53,18 +53,20 @@ live::BareModel read_model(const Command& command, const std::string& path, cons
 live::Shown open_command(const Command& command, const tool::Tool& t) {
   if (live::is_scene(command.scene)) {
     sim::Setup setup = sim::read_setup(command.scene, sim::parse_overrides(command.settings));
-    sim::tell_lost_materials(setup);
     return shown(command, command.scene, {std::move(setup), {}}, t);
   }
-  return shown(command, command.scene, read_model(command, command.scene, geo::read_all(command.scene), t), t);
+  const live::ModelFile file{.name = command.scene, .bytes = geo::read_all(command.scene)};
+  live::Shown result = shown(command, command.scene, read_model(command, file, t), t);
+  result.model = {.name = fs::path(file.name).filename().string(), .bytes = file.bytes};
+  return result;
 }
 
 // A model that was dropped on the page.
-live::Shown open_dropped(const Command& command, const std::string& name, const std::string& bytes,
-                         const tool::Tool& t) {
-  if (live::is_scene(name))
-    throw geo::InputError(name + ": is a scene, which names other files: start kerf-live with it");
-  return shown(command, name, read_model(command, name, bytes, t), t);
+live::Shown open_dropped(const Command& command, live::ModelFile file, const tool::Tool& t) {
+  if (live::is_scene(file.name))
+    throw geo::InputError(file.name + ": is a scene, which names other files: start kerf-live with it");
+  if (file.up == 0) file.up = live::up_axis(file.name);
+  return shown(command, file.name, read_model(command, file, t), t);
 }
 
 void require_options(const Command& command) {
@@ -113,9 +115,7 @@ void serve(const Command& command, const tool::Tool& t) {
     const bool opened = !command.no_browser && live::open_browser(server.url());
     t.say(opened ? "kerf-live: opened in the browser; Ctrl-C ends it"
                  : "kerf-live: open this address in a browser; Ctrl-C ends it");
-    const auto open = [&](const std::string& name, const std::string& bytes) {
-      return open_dropped(command, name, bytes, t);
-    };
+    const auto open = [&](const live::ModelFile& file) { return open_dropped(command, file, t); };
     end = live::run_loop(shown, inbox, server, {command.linger, &tool::Tool::goes_on, open});
   }
   if (end == live::LoopEnd::deserted)

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <kerf/error.h>
 #include <kerf/parallel.h>
@@ -14,6 +15,7 @@
 #include "live/inbox.h"
 #include "live/loop.h"
 #include "live/page_view.h"
+#include "live/save.h"
 
 namespace {
 
@@ -56,6 +58,7 @@ class TabPage : public live::Pages {
       if (const auto* want = std::get_if<live::Want>(&command)) {
         view_.nodes = want->nodes.value_or(view_.nodes);
         view_.stress = want->stress.value_or(view_.stress);
+        if (want->rest) view_.want_rest(*want->rest);
         if (want->graph) view_.ask_graph(++graphs_);
       }
       if (!inbox.put({the_page, std::move(command)}))
@@ -81,31 +84,42 @@ struct Tab {
 Tab tab;
 
 // A scene names files that a tab does not have.
-live::Shown shown_model(const std::string& name, const std::string& bytes, char up, int nodes) {
+live::Shown shown_model(const live::ModelFile& file, char up, int nodes) {
+  const std::string& name = file.name;
   if (live::is_scene(name)) throw geo::InputError(name + ": is a scene, which names other files: drop a model");
-  live::BareModel read = live::bare_model(name, bytes, nodes, up, {});
+  live::BareModel read = live::bare_model(name, file.bytes, nodes, up, {}, file.beside);
   live::adapt_scene(read.setup.scene, default_rate, true);
   live::Shown shown{.name = std::filesystem::path(name).stem().string(), .waits = true, .notes = read.notes};
   shown.session = std::make_unique<live::Session>(read.setup, geo::Progress());
   return shown;
 }
 
-// glTF's y axis is vertical; other formats do not say.
-char up_axis(const std::string& name, const std::string& wanted) {
+char up_axis(const live::ModelFile& file, const std::string& wanted) {
+  if (file.up) return file.up;
   if (wanted == "y" || wanted == "z") return wanted[0];
-  return name.ends_with(".glb") || name.ends_with(".GLB") ? 'y' : 'z';
+  return live::up_axis(file.name) == 'y' ? 'y' : 'z';
+}
+
+// Files that came with a model: a list of {name, bytes}.
+std::vector<live::BesideFile> beside_of(const val& files) {
+  std::vector<live::BesideFile> beside;
+  const auto count = files["length"].as<unsigned>();
+  for (unsigned i = 0; i < count; ++i)
+    beside.push_back({files[i]["name"].as<std::string>(), text_from(files[i]["bytes"])});
+  return beside;
 }
 
 // Opens a model in place of the one that is shown; the reason where it cannot be opened.
-std::string open_model(const std::string& name, const val& bytes, const std::string& up, int nodes) {
+std::string open_model(const std::string& name, const val& bytes, const val& beside, const std::string& up, int nodes) {
   const int wanted = nodes > 0 ? nodes : default_nodes;
-  tab.options.open = [=](const std::string& file, const std::string& content) {
-    return shown_model(file, content, up_axis(file, up), wanted);
-  };
+  tab.options.open = [=](const live::ModelFile& file) { return shown_model(file, up_axis(file, up), wanted); };
+  live::ModelFile file{.name = name, .bytes = text_from(bytes), .beside = beside_of(beside)};
   if (!tab.turns) {
     try {
       geo::set_threads(1);
-      tab.shown = tab.options.open(name, text_from(bytes));
+      tab.shown = tab.options.open(file);
+      tab.shown.model = {.name = name, .bytes = file.bytes};
+      tab.shown.from_page = true;
       tab.options.linger = 0;
       tab.turns = std::make_unique<live::Turns>(tab.shown, tab.inbox, tab.page, tab.options);
       tab.inbox.put({the_page, live::Join{}});
@@ -116,8 +130,7 @@ std::string open_model(const std::string& name, const val& bytes, const std::str
     }
   }
   std::string reason;
-  tab.inbox.put(
-      {0, live::Open{name, text_from(bytes), [&](live::Answer answer) { reason = std::move(answer.error); }}});
+  tab.inbox.put({0, live::Open{std::move(file), [&](live::Answer answer) { reason = std::move(answer.error); }}});
   tab.turns->take();
   return reason;
 }
@@ -125,14 +138,14 @@ std::string open_model(const std::string& name, const val& bytes, const std::str
 // The file as {bytes, name}, or {error}.
 val save(const std::string& format) {
   val result = val::object();
-  if (format != "kerf" && format != "ply" && format != "glb" && format != "stl" && format != "toml") {
-    result.set("error", std::string("save as kerf, ply, glb, stl or toml"));
+  if (!live::is_save_format(format)) {
+    result.set("error", std::string(live::save_formats));
     return result;
   }
   tab.inbox.put({0, live::Save{format, [&](live::Answer answer) {
                                  if (!answer.error.empty()) return result.set("error", answer.error);
                                  result.set("bytes", bytes_of(answer.bytes));
-                                 result.set("name", answer.name + "." + format);
+                                 result.set("name", answer.name);
                                }}});
   tab.turns->take();
   return result;

@@ -46,9 +46,11 @@ async function openFirst() {
 }
 
 // Opens a model; the reason where it cannot be opened, else an empty text.
-async function openModel(file) {
+// `beside`: its materials and images.
+async function openModel(file, beside) {
   const bytes = await file.arrayBuffer(), wishes = new URLSearchParams(location.search);
-  const reason = await ask({ kind: "open", name: file.name, bytes, up: wishes.get("up") ?? "", nodes: Number(wishes.get("nodes") ?? 0) }, [bytes]);
+  const others = await Promise.all(beside.map(async (other) => ({ name: other.name, bytes: await other.arrayBuffer() })));
+  const reason = await ask({ kind: "open", name: file.name, bytes, beside: others, up: wishes.get("up") ?? "", nodes: Number(wishes.get("nodes") ?? 0) }, [bytes]);
   if (reason === "" && !wire.open) wire.open = true, sendWants(true), connection("");
   return reason;
 }

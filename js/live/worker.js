@@ -32,7 +32,8 @@ function turn() {
 turns.port1.onmessage = turn;
 
 const answers = {
-  open: ({ name, bytes, up, nodes }) => module.openModel(name, new Uint8Array(bytes), up ?? "", nodes ?? 0),
+  open: ({ name, bytes, beside, up, nodes }) =>
+    module.openModel(name, new Uint8Array(bytes), (beside ?? []).map((file) => ({ name: file.name, bytes: new Uint8Array(file.bytes) })), up ?? "", nodes ?? 0),
   save: ({ format }) => module.save(format),
 };
 onmessage = ({ data }) => {

@@ -2,14 +2,15 @@
 
 The bear is cut by one drag, undone, cut three times, broken, saved. With KERF_TOOLS, a folder with kerf-sim, the saved scene is run
 there. A GLB is dropped, cut and broken, on a phone's screen by a finger.
-The console has no error, and after the page is loaded nothing asks any host for anything.
+An OBJ has the colours of the MTL and image that are dropped with it. The console has no error, and after the page is loaded nothing asks any host for anything.
 --rates: only how many frames of simulation a second the polyp and the bear of 800 nodes have, before and after a cut.
 """
-import base64, functools, http.server, json, os, shutil, struct, subprocess, sys, tempfile, threading, time
+import base64, functools, http.server, json, os, shutil, struct, subprocess, sys, tempfile, threading, time, zlib
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "live"))
 from hand import Hand, along
+from pictures import count
 
 rates = os.path.abspath(sys.argv[2]) if sys.argv[1] == "--rates" else None
 folder, failures, served = os.path.abspath(sys.argv[-1]), [], []
@@ -125,9 +126,9 @@ def box_glb(n=8):
     return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
 
 
-def drop(hand, path):
-    """Drops a file on the page; it is shown when this returns."""
-    data = {"items": [], "files": [os.path.abspath(path)], "dragOperationsMask": 1}
+def drop(hand, path, *beside):
+    """Drops a file on the page, with others beside it; it is shown when this returns."""
+    data = {"items": [], "files": [os.path.abspath(file) for file in (path, *beside)], "dragOperationsMask": 1}
     for kind in ("dragEnter", "dragOver", "drop"):
         hand.send("Input.dispatchDragEvent", type=kind, x=240, y=210, data=data)
     name = os.path.splitext(os.path.basename(path))[0]
@@ -232,6 +233,38 @@ def on_phone(hand):
     hand.send("Emulation.setTouchEmulationEnabled", enabled=False)
 
 
+def check_painted(hand):
+    """An OBJ that comes with its MTL and image has their colours; one that comes alone says what is missing."""
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    row = b"\0" + bytes([230, 40, 30]) * 8 + bytes([30, 60, 220]) * 8
+    with open("two.png", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 16, 16, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(row * 16)) + chunk(b"IEND", b""))
+    with open("two.mtl", "w") as file:
+        file.write("newmtl sides\nKd 1 1 1\nmap_Kd two.png\n")
+    n, place, faces = 8, {}, []
+    for axis in range(3):
+        for side in (0, n):
+            for i in range(n):
+                for j in range(n):
+                    at = [[a, b] for a, b in ((i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1))]
+                    corners = [tuple(p[:axis] + [side] + p[axis:]) for p in at]
+                    faces.append([f"{place.setdefault(corner, len(place) + 1)}/{p[0] * (n + 1) + p[1] + 1}" for corner, p in zip(corners, at)])
+                    if (side == n) != (axis != 1):
+                        faces[-1].reverse()
+    with open("two.obj", "w") as file:
+        file.write("mtllib two.mtl\n" + "".join(f"v {x / n} {y / n} {z / n}\n" for x, y, z in place))
+        file.write("".join(f"vt {i / n} {j / n}\n" for i in range(n + 1) for j in range(n + 1)) + "usemtl sides\n" + "".join("f " + " ".join(face) + "\n" for face in faces))
+    red, blue = "r > 1.8 * g && r > 1.8 * b && r > 70", "b > 1.6 * r && b > 1.6 * g && b > 60"
+    drop(hand, "two.obj", "two.mtl", "two.png")
+    hand.wait("surface.painted !== null && surface.paint.textures.some((texture) => texture)")
+    seen = [count(hand, red), count(hand, blue)]
+    check(f"a painted box has {seen} red and blue pixels", min(seen) > 1500)
+    hand.run("live.told.name = ''")
+    drop(hand, "two.obj")
+    hand.wait("$('notice').textContent.includes('names two.mtl, not in its folder')")
+    check("an OBJ alone has colours", hand.run("surface.painted") is None)
+
+
 def use(hand):
     started = time.time()
     hand.visit(address + "#shadows=false")
@@ -267,6 +300,7 @@ def use(hand):
     pieces = cut(hand, 1)
     check(f"one drag makes {pieces} pieces of the box", pieces == 2)
     on_phone(hand)
+    check_painted(hand)
 
     check(f"the console has {hand.errors}", not hand.errors)
     others = [url for url in hand.requests if not url.startswith((address, "data:", "blob:"))]

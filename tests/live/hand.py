@@ -51,9 +51,9 @@ class Hand(Browser):
         self.wait(f"live.time > {before}")
 
     def finish(self):
-        """Steps until no edge is in the body: an edge that the pointer has left behind comes after it."""
+        """Steps until no edge is in the body or waits to be: an edge that the pointer has left behind comes after it."""
         self.step()
-        while self.stats()["edges"]:
+        while self.stats()["edges"] or self.stats()["waiting"]:
             self.step()
 
     def drag(self, places, button="left", each=lambda: None, release=True):

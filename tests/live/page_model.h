@@ -23,6 +23,17 @@ class PageModel {
   std::vector<double> stress;
   std::vector<std::array<std::uint32_t, 2>> edges;
   std::array<float, 3> step{};
+  std::vector<std::array<float, 3>> rest;  // per vertex slot; where the page has asked for it
+  // Per slot: material, and for each corner the place in the image and the tint.
+  struct Paint {
+    std::uint16_t material = 0;
+    std::array<std::array<float, 2>, 3> at{};
+    std::array<std::uint32_t, 3> tint{};
+  };
+  std::vector<Paint> paint;
+  std::vector<double> skin_stress;  // per vertex slot
+  nlohmann::json look;
+  std::string images;
 
   /// Takes a message; throws where it is shorter or longer than it says, or does not follow.
   void take(const std::string& bytes) {
@@ -35,6 +46,11 @@ class PageModel {
     time = get<double>();
     if (kind == 5) {
       notice = nlohmann::json::parse(bytes_.substr(at_));
+      return;
+    }
+    if (kind == 6) {
+      look = text(get<std::uint32_t>());
+      images = bytes_.substr(at_);
       return;
     }
     if (kind == 4) {
@@ -66,10 +82,18 @@ class PageModel {
       if (get<char>() != 0) throw std::runtime_error("padding");
   }
   std::array<std::uint32_t, 3> corners() { return {get<std::uint32_t>(), get<std::uint32_t>(), get<std::uint32_t>()}; }
+  std::array<float, 3> place() { return {get<float>(), get<float>(), get<float>()}; }
+  void take_paint(const std::vector<std::uint32_t>& slots) {
+    for (const auto s : slots) paint[s].material = get<std::uint16_t>();
+    align();
+    for (const auto s : slots)
+      for (auto& at : paint[s].at) at = {get<float>(), get<float>()};
+    for (const auto s : slots)
+      for (auto& tint : paint[s].tint) tint = get<std::uint32_t>();
+  }
   void take_state() {
     revision = get<std::uint32_t>();
-    get<std::uint32_t>();
-    const auto slots = get<std::uint32_t>();
+    const auto vertices = get<std::uint32_t>(), slots = get<std::uint32_t>();
     get<std::uint32_t>();
     scene = text(get<std::uint32_t>());
     triangles.resize(slots);
@@ -77,6 +101,12 @@ class PageModel {
     for (auto& t : triangles) t = corners();
     for (int& p : patch) p = get<std::uint8_t>();
     align();
+    rest.resize(flags & 4 ? vertices : 0);
+    for (auto& p : rest) p = place();
+    paint.resize(flags & 8 ? slots : 0);
+    std::vector<std::uint32_t> all(paint.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    take_paint(all);
   }
   void take_delta() {
     if (get<std::uint32_t>() != revision) throw std::runtime_error("revision");
@@ -95,6 +125,17 @@ class PageModel {
     }
     for (const auto slot : slots) patch[slot] = get<std::uint8_t>();
     align();
+    if (flags & 4) {
+      std::vector<std::uint32_t> placed(get<std::uint32_t>());
+      for (auto& v : placed) v = get<std::uint32_t>();
+      for (const auto v : placed) {
+        if (v >= rest.size()) rest.resize(v + 1);
+        rest[v] = place();
+      }
+    }
+    if (!(flags & 8)) return;
+    paint.resize(triangles.size());
+    take_paint(slots);
   }
   void take_frame() {
     if (get<std::uint32_t>() != revision) throw std::runtime_error("revision of the frame");
@@ -115,6 +156,12 @@ class PageModel {
     if (flags & 2) {
       const float most = get<float>();
       for (double& s : stress) s = double(most) * get<std::uint16_t>() / 65535;
+      align();
+    }
+    skin_stress.resize(flags & 16 ? positions.size() : 0);
+    if (flags & 16) {
+      const float most = get<float>();
+      for (double& s : skin_stress) s = double(most) * get<std::uint16_t>() / 65535;
       align();
     }
   }

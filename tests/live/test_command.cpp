@@ -54,7 +54,7 @@ TEST_CASE("each kind of message is read") {
   REQUIRE(path.way.size() == 2);
   CHECK((path.way[0].origin == geo::Vec3(0, -3, 0) && path.way[0].direction == geo::Vec3(0, 1, 0)));
   CHECK((path.way[1].origin == geo::Vec3(0.5, -6, 0) && path.way[1].direction == geo::Vec3(1, 0, 0)));
-  const auto blow = std::get<Blow>(read_command(samples[17]));
+  const auto blow = std::get<Blow>(read_command(samples[19]));
   CHECK((blow.spot.face == 12 && blow.cells == 9));
   const auto surface_path = std::get<Stroke>(read_command(samples[13]));
   REQUIRE(surface_path.way.size() == 1);
@@ -63,6 +63,8 @@ TEST_CASE("each kind of message is read") {
   CHECK(std::get<Grab>(read_command(samples[14])).held == 2u);
   CHECK(std::get<Grab>(read_command(samples[15])).phase == Phase::hold);
   CHECK(std::holds_alternative<Redo>(read_command(samples[16])));
+  CHECK(std::get<Show>(read_command(samples[17])).name == "apple");
+  CHECK(std::get<Want>(read_command(samples[18])).rest == true);
 }
 
 TEST_CASE("a path that is too long loses every second pose") {

@@ -374,20 +374,27 @@ TEST_CASE("a model is opened for the page itself only, and what is wrong with it
   CHECK(posted(s, target, "", own, std::uint64_t(1) << 29) ==
         std::pair<int, std::string>(413, "the file has more than 256 MB\n"));
   std::string name, bytes;
+  std::vector<BesideFile> beside;
   std::thread simulation([&] {
     auto requests = wait_for<Open>(s.inbox, 1);
     auto& open = std::get<Open>(requests[0].what);
-    name = open.name;
-    bytes = open.bytes;
+    name = open.model.name;
+    bytes = open.model.bytes;
+    beside = open.model.beside.value_or(std::vector<BesideFile>{});
     open.answer({});
     requests = wait_for<Open>(s.inbox, 1);
     std::get<Open>(requests[0].what).answer({.error = "a.off: is open"});
   });
-  CHECK(posted(s, target, "OFF 3", own).first == 200);
+  CHECK(posted(s, target + "&beside=a:99", "OFF 3", own).first == 400);
+  CHECK(posted(s, target + "&beside=a", "OFF 3", own).first == 400);
+  CHECK(posted(s, target + "&beside=m%20.mtl:2&beside=i:png:3", "OFF 3MLPNG", own).first == 200);
   CHECK(posted(s, target, "OFF", own) == std::pair<int, std::string>(422, "a.off: is open\n"));
   simulation.join();
   CHECK(name == "a b/c%zz.off");
   CHECK(bytes == "OFF 3");
+  REQUIRE(beside.size() == 2);
+  CHECK((beside[0].name == "m .mtl" && beside[0].bytes == "ML"));
+  CHECK((beside[1].name == "i:png" && beside[1].bytes == "PNG"));
 }
 
 TEST_CASE("a page gets the whole state of another scene, and is told of the end") {

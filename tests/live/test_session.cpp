@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 #include <kerf/body_file.h>
 #include <kerf/contact.h>
@@ -431,6 +432,52 @@ TEST_CASE("an edge follows the whole path that was drawn before a frame, and goe
   }
   CHECK(session.history().strokes() == 2);
   CHECK(replayed(session) == surface_bytes(session.run()));
+}
+
+TEST_CASE("strokes that begin in one frame are one step of undo, whichever of them cut") {
+  for (const auto& [left, right, steps] :
+       {std::tuple(-0.2, 1.2, 1u), {-3.0, 1.2, 1u}, {-0.2, 3.0, 1u}, {-3.0, 3.0, 0u}}) {
+    CAPTURE(left, right);
+    Session session(setup(), {});
+    std::string whole;
+    for (int i = 0; i <= 12; ++i) {
+      const Phase phase = i == 0 ? Phase::begin : i == 12 ? Phase::end : Phase::move;
+      session.obey(1, knife(1, phase, left + 0.05 * i));
+      session.obey(1, knife(2, phase, right - 0.05 * i));
+      REQUIRE(session.advance().empty());
+      if (i == 0) whole = surface_bytes(session.run());  // an edge is a blade from its first motion on
+    }
+    for (int i = 0; i < 2; ++i) session.advance();
+    REQUIRE(session.history().strokes() == steps);
+    CHECK(replayed(session) == surface_bytes(session.run()));
+    if (steps == 0) continue;
+    const std::string cut = surface_bytes(session.run());
+    session.undo();
+    CHECK(surface_bytes(session.run()) == whole);
+    CHECK(session.history().strokes() == 0);
+    session.redo();
+    CHECK(surface_bytes(session.run()) == cut);
+  }
+}
+
+TEST_CASE("a tight skin is a new beginning; edges are as dull as was said when they began to cut") {
+  Session session(setup(), {});
+  const std::string loose = surface_bytes(session.run());
+  cut(session, 1, -0.2, 0.4);
+  session.obey(Set{.resistance = 20, .dullness = 0.4, .tension = 1.3});
+  CHECK(session.history().strokes() == 0);
+  CHECK(session.run().state().frame == 0);
+  CHECK(session.original().prestretch.skin == 1.3);
+  cut(session, 1, -0.2, 0.4);
+  CHECK(session.recording().blades.back().resistance == 20);
+  CHECK(session.recording().blades.back().friction == 0.4);
+  CHECK(replayed(session) == surface_bytes(session.run()));
+  session.withhold_weight();
+  CHECK(!session.is_weightless());  // it rests in its weight
+  session.obey(Set{.resistance = 0, .dullness = 0, .tension = 1});
+  CHECK(surface_bytes(session.run()) == loose);
+  cut(session, 1, -0.2, 0.4);
+  CHECK(session.recording().blades.back().resistance == 0);
 }
 
 TEST_CASE("redo makes undone cuts again, to the bit, with all that hands did then") {

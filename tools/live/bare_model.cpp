@@ -2,11 +2,17 @@
 #include "live/bare_model.h"
 
 #include <filesystem>
+#include <random>
+#include <utility>
+
+#include <kerf/error.h>
 
 #include "model.h"
 
 namespace live {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::string row(const geo::Vec3& p) {
   return "[" + tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z()) + "]";
@@ -31,26 +37,67 @@ std::string scene_of(const geo::TriangleMesh& mesh, const std::string& path, int
          "\nfriction = 0.5\n[contact]\nfriction = 0.1\n[time]\nstep = 0.0167\naccuracy = 0.01\n";
 }
 
+// A folder for a while.
+class Folder {
+ public:
+  Folder() {
+    std::random_device random;
+    path_ = fs::temp_directory_path() / ("kerf-live-" + std::to_string(random()) + std::to_string(random()));
+    fs::create_directories(path_);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  std::string prefix() const { return path_.string() + "/"; }
+
+ private:
+  fs::path path_;
+};
+
+// Reads a model whose materials and images came with it. They are files for the reader.
+geo::SurfaceFile parse_with(const std::string& name, const std::string& bytes, const std::vector<BesideFile>& beside) {
+  const Folder folder;
+  for (const BesideFile& file : beside) {
+    if (fs::path(file.name).filename() != file.name || file.name == ".." || file.name == ".")
+      throw geo::InputError(file.name + ": is no name of a file");
+    geo::write_all(folder.file(file.name), [&](std::ostream& out) { out << file.bytes; });
+  }
+  try {
+    return tool::parse_solid(bytes, folder.file(name));
+  } catch (const geo::InputError& e) {
+    std::string what = e.what();
+    for (auto at = what.find(folder.prefix()); at != what.npos; at = what.find(folder.prefix()))
+      what.erase(at, folder.prefix().size());
+    throw geo::InputError(what);
+  }
+}
+
 }  // namespace
 
 bool is_scene(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
+  const std::string ending = fs::path(path).extension().string();
   return ending == ".toml" || ending == ".json";
 }
 
+char up_axis(const std::string& name) {
+  const std::string ending = fs::path(name).extension().string();
+  return ending == ".glb" || ending == ".GLB" ? 'y' : 0;
+}
+
 BareModel bare_model(const std::string& path, const std::string& bytes, int nodes, char up,
-                     const geo::SceneOverrides& overrides) {
-  geo::SurfaceFile file = tool::parse_solid(bytes, path);
+                     const geo::SceneOverrides& overrides, const std::optional<std::vector<BesideFile>>& beside) {
   BareModel result;
-  const std::string name = std::filesystem::path(path).filename().string();
+  const std::string name = fs::path(path).filename().string();
+  geo::SurfaceFile file = beside ? parse_with(name, bytes, *beside) : tool::parse_solid(bytes, path);
   for (const std::string& note : file.notes) result.notes.push_back(name + ": " + note);
   geo::TriangleMesh& mesh = file.mesh;
   tool::require_whole(mesh, path, "a scene begins with whole models");
-  const geo::Attributes& attributes = mesh.attributes;
-  if (!attributes.materials.empty() || attributes.library != geo::MaterialLibrary() || !attributes.uv.empty())
-    result.notes.push_back(name + ": materials and images are not shown, and files that are saved here have none");
-  mesh.attributes.library = {};  // each frame would hold its images
   sim::Setup& setup = result.setup;
+  setup.materials = std::exchange(mesh.attributes.library, {});  // each frame would hold its images
   setup.scene = geo::parse_scene(scene_of(mesh, path, nodes, up), path, overrides);
   setup.models = geo::place_models(setup.scene, {std::move(mesh)});
   setup.fingerprint = setup.scene.fingerprint;

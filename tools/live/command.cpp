@@ -203,10 +203,14 @@ Blow blow_of(Table& t) {
 }
 
 Set set_of(Table& t) {
+  constexpr double most_tension = 2;  // living skin bears about half of it
   return {.young = t.optional_number("young", 1, 1e12),
           .friction = t.optional_number("friction", 0, 1),
           .damping = t.optional_number("damping", 0, 1e3),
-          .gravity = t.optional_point("gravity")};
+          .gravity = t.optional_point("gravity"),
+          .resistance = t.optional_number("resistance", 0, 1e9),
+          .dullness = t.optional_number("dullness", 0, 2),
+          .tension = t.optional_number("tension", 1, most_tension)};
 }
 
 template <class Read>
@@ -232,7 +236,10 @@ Command command_of(const std::string& key, const Json& value) {
   }
   if (key == "want")
     return inner(value, key, [](Table& t) {
-      return Want{t.optional_flag("nodes"), t.optional_flag("stress"), t.optional_flag("graph").value_or(false)};
+      return Want{.nodes = t.optional_flag("nodes"),
+                  .stress = t.optional_flag("stress"),
+                  .rest = t.optional_flag("rest"),
+                  .graph = t.optional_flag("graph").value_or(false)};
     });
   if (key == "knife") return inner(value, key, knife_of);
   if (key == "scalpel") return inner(value, key, scalpel_of);
@@ -240,6 +247,10 @@ Command command_of(const std::string& key, const Json& value) {
   if (key == "pin") return inner(value, key, pin_of);
   if (key == "break") return inner(value, key, blow_of);
   if (key == "set") return inner(value, key, set_of);
+  if (key == "show") {
+    if (!value.is_string()) throw BadMessage("'show' must be the name of a body of the gallery");
+    return Show{value.get<std::string>()};
+  }
   if (key == "undo") return sign<Undo>(value, key);
   if (key == "redo") return sign<Redo>(value, key);
   if (key == "reset") return sign<Reset>(value, key);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -27,9 +28,10 @@ enum class Phase { begin, move, end, hold };
 struct Acknowledge {
   std::uint32_t sequence = 0;
 };
-/// Data that frames are to hold in addition to the surface. `graph`: once.
+/// Data that frames are to hold in addition to the surface. `graph`: once. `rest`: places in the
+/// material and colours, with what changes.
 struct Want {
-  std::optional<bool> nodes, stress;
+  std::optional<bool> nodes, stress, rest;
   bool graph = false;
 };
 /// Where an edge is: it begins at `origin`, along `direction` (unit).
@@ -76,10 +78,17 @@ struct Blow {
   Spot spot;
   int cells = 0;  ///< of the pattern: about as many parts, or fewer
 };
-/// Values of the scene.
+/// Values of the scene, of the edges to come, and of the skin.
 struct Set {
-  std::optional<double> young, friction, damping;
-  std::optional<geo::Vec3> gravity;
+  std::optional<double> young = {}, friction = {}, damping = {};
+  std::optional<geo::Vec3> gravity = {};
+  std::optional<double> resistance = {};  ///< of the material to edges, J / model unit²
+  std::optional<double> dullness = {};    ///< friction of edges: Coulomb's coefficient
+  std::optional<double> tension = {};     ///< stretch of the skin, 1: none. The body begins anew
+};
+/// A body of the gallery, shown in place of the present one.
+struct Show {
+  std::string name;
 };
 struct Undo {};
 struct Redo {};
@@ -89,7 +98,7 @@ struct Pause {
 };
 struct Step {};
 
-using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Blow, Set, Undo, Redo, Reset, Pause, Step>;
+using Command = std::variant<Acknowledge, Want, Stroke, Grab, Pin, Blow, Set, Show, Undo, Redo, Reset, Pause, Step>;
 
 /// Reads a message. Throws BadMessage where it is longer than longest_message, no JSON, of no known
 /// kind, has unknown or missing keys, or values out of range. Throws nothing else.

@@ -66,8 +66,40 @@ struct Grid {
   }
 };
 
+constexpr std::uint8_t has_nodes = 1, has_stress = 2, has_rest = 4, has_paint = 8, has_skin_stress = 16;
+
 std::uint8_t flags_of(const Snapshot& s, const Content& c) {
-  return static_cast<std::uint8_t>((c.nodes && !s.nodes.empty() ? 1 : 0) | (c.stress && !s.stress.empty() ? 2 : 0));
+  const bool skin_stress = c.rest && c.stress && !s.skin_stress.empty();
+  return static_cast<std::uint8_t>((c.nodes && !s.nodes.empty() ? has_nodes : 0) |
+                                   (c.stress && !s.stress.empty() ? has_stress : 0) | (c.rest ? has_rest : 0) |
+                                   (c.rest && !s.topology->paint.empty() ? has_paint : 0) |
+                                   (skin_stress ? has_skin_stress : 0));
+}
+
+void put_rest(Bytes& bytes, const Eigen::Vector3f& p) {
+  for (int k = 0; k < 3; ++k) bytes.put(p[k]);
+}
+
+// Materials of all, places of all, tints of all.
+void put_paint(Bytes& bytes, const std::vector<TrianglePaint>& paint) {
+  for (const TrianglePaint& t : paint) bytes.put(t.material);
+  bytes.pad();
+  for (const TrianglePaint& t : paint)
+    for (const Eigen::Vector2f& at : t.at) {
+      bytes.put(at.x());
+      bytes.put(at.y());
+    }
+  for (const TrianglePaint& t : paint) bytes.put(t.tint);
+}
+
+// The largest value, and all in 65536 steps of it.
+void put_values(Bytes& bytes, const std::vector<double>& values) {
+  const double most = *std::max_element(values.begin(), values.end());
+  bytes.put(static_cast<float>(most));
+  std::vector<std::uint16_t> steps;
+  for (const double x : values) steps.push_back(static_cast<std::uint16_t>(most > 0 ? 65535 * x / most : 0));
+  bytes.put_all(steps);
+  bytes.pad();
 }
 
 void put_frame(Bytes& bytes, const Snapshot& s, const Content& content) {
@@ -75,7 +107,7 @@ void put_frame(Bytes& bytes, const Snapshot& s, const Content& content) {
   const std::string statistics = Bytes::padded(s.statistics + ",\"ack_input\":" + std::to_string(content.taken) + "}");
   Grid grid;
   for (const geo::Vec3& p : s.positions) grid.box.add(p);
-  if (flags & 1)
+  if (flags & has_nodes)
     for (const geo::Vec3& p : s.nodes) grid.box.add(p);
   grid.fit();
   bytes.put(s.topology->revision);
@@ -86,15 +118,9 @@ void put_frame(Bytes& bytes, const Snapshot& s, const Content& content) {
   for (int k = 0; k < 3; ++k) bytes.put(grid.lo[k]);
   for (int k = 0; k < 3; ++k) bytes.put(grid.step[k]);
   grid.put(bytes, s.positions);
-  if (flags & 1) grid.put(bytes, s.nodes);
-  if (flags & 2) {
-    const double most = *std::max_element(s.stress.begin(), s.stress.end());
-    bytes.put(static_cast<float>(most));
-    std::vector<std::uint16_t> values;
-    for (const double x : s.stress) values.push_back(static_cast<std::uint16_t>(most > 0 ? 65535 * x / most : 0));
-    bytes.put_all(values);
-    bytes.pad();
-  }
+  if (flags & has_nodes) grid.put(bytes, s.nodes);
+  if (flags & has_stress) put_values(bytes, s.stress);
+  if (flags & has_skin_stress) put_values(bytes, s.skin_stress);
 }
 
 }  // namespace
@@ -112,6 +138,10 @@ std::string encode_state(const Snapshot& s, const Content& content) {
   bytes.put_all(t.triangle);
   bytes.put_all(t.patch);
   bytes.pad();
+  if (content.rest) {
+    for (const Eigen::Vector3f& p : t.rest) put_rest(bytes, p);
+    put_paint(bytes, t.paint);
+  }
   put_frame(bytes, s, content);
   return bytes.take();
 }
@@ -139,6 +169,15 @@ std::string encode_frame(const Snapshot& s, const Topology& known, const Content
   }
   bytes.put_all(patch);
   bytes.pad();
+  if (content.rest) {
+    bytes.put_size(change.placed.size());
+    bytes.put_all(change.placed);
+    for (const auto vertex : change.placed) put_rest(bytes, t.rest[vertex]);
+    std::vector<TrianglePaint> paint;
+    for (const auto slot : change.added)
+      if (!t.paint.empty()) paint.push_back(t.paint[slot]);
+    put_paint(bytes, paint);
+  }
   put_frame(bytes, s, content);
   return bytes.take();
 }
@@ -150,6 +189,12 @@ std::string encode_graph(const Snapshot& s, std::uint32_t sequence) {
     bytes.put(a);
     bytes.put(b);
   }
+  return bytes.take();
+}
+
+std::string encode_look(const Snapshot& s, std::uint32_t sequence) {
+  Bytes bytes(Kind::look, 0, sequence, s.time);
+  bytes.put_text(*s.look);
   return bytes.take();
 }
 

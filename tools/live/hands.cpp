@@ -144,6 +144,8 @@ void Hands::add_blade(HeldBlade& held, const EdgePose& from) {
   blade.limit = most_motion;
   blade.back = {blade_width * coarsest, 0, 0};
   blade.thickness = blade_thickness * coarsest;
+  blade.friction = edges_.friction;
+  blade.resistance = edges_.resistance;
   held.blade = run_.add_blade(std::move(blade), held.edge.pose_at(from)).index();
   held.faces = run_.body().surface.face_count();
 }

@@ -43,6 +43,12 @@ struct Lasting {
   std::map<std::uint64_t, HeldPull> springs;  ///< by their numbers
 };
 
+/// How hard it is to cut.
+struct EdgeKind {
+  double resistance = 0;  ///< of the material, J / model unit²
+  double friction = 0;    ///< of the flanks, Coulomb's coefficient
+};
+
 /// Turns the commands of pages into blades, pulls and grips of a run, to which it refers.
 class Hands {
  public:
@@ -55,6 +61,9 @@ class Hands {
   void obey(ClientId page, const Grab& grab, const geo::Vec3& gravity);
   /// Likewise.
   void obey(const Pin& pin);
+  /// Properties of the edges of strokes that begin to cut from now on.
+  void set_edges(const EdgeKind& kind) { edges_ = kind; }
+  const EdgeKind& edges() const { return edges_; }
   /// Ends all strokes and grabs of a page. Springs that stay belong to no page.
   void leave(ClientId page);
   /// Lets all go, in a run that has begun anew or has gone back; `lasting` is what it has.
@@ -109,6 +118,7 @@ class Hands {
   std::map<Hand, HeldBlade> strokes_;
   std::map<Hand, HeldPull> grabs_;
   Lasting lasting_;
+  EdgeKind edges_;
   std::uint64_t last_spring_ = 0, last_stroke_ = 0;
 };
 

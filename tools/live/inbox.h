@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "live/command.h"
+#include "live/model_file.h"
 #include "live/snapshot.h"
 
 namespace live {
@@ -21,16 +22,16 @@ struct Leave {};
 struct Answer {
   std::string error = {};  ///< empty: it was obeyed
   std::string bytes = {};  ///< of a file
-  std::string name = {};   ///< of the file, without its ending
+  std::string name = {};   ///< of the file
 };
 /// A file is wanted. `answer` may be called on any thread, once, while the server lives.
 struct Save {
-  std::string format;  ///< kerf, ply, glb, stl or toml
+  std::string format;  ///< kerf, ply, glb, stl, toml, or model: as it was opened
   std::function<void(Answer)> answer;
 };
 /// A model is to be opened in place of the one that is shown. `answer`: as in Save.
 struct Open {
-  std::string name, bytes;
+  ModelFile model;
   std::function<void(Answer)> answer;
 };
 

@@ -3,10 +3,14 @@
 #include "live/loop.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <thread>
 #include <utility>
 
+#include <kerf/error.h>
+
+#include "live/gallery.h"
 #include "live/memory.h"
 #include "live/pace.h"
 #include "live/save.h"
@@ -125,7 +129,13 @@ struct Turns::Impl {
   }
   bool obey(ClientId, Save& save) {
     try {
-      save.answer({.bytes = saved_file(session(), save.format, {}), .name = shown_.name});
+      if (save.format == "model") {
+        if (shown_.model.bytes.empty()) throw BadMessage("a scene names its models, which are files of their own");
+        save.answer({.bytes = shown_.model.bytes, .name = shown_.model.name});
+      } else {
+        const std::string folder = shown_.from_page ? std::filesystem::current_path().string() : "";
+        save.answer({.bytes = saved_file(session(), save.format, folder), .name = shown_.name + "." + save.format});
+      }
     } catch (const std::exception& e) {
       save.answer({.error = e.what()});
     }
@@ -133,17 +143,25 @@ struct Turns::Impl {
   }
   bool obey(ClientId, Open& open) {
     try {
-      if (!options_.open) throw BadMessage("no model can be opened here");
-      shown_ = options_.open(open.name, std::move(open.bytes));
-      release_free_memory();
-      begin();
-      for (const ClientId page : pages_)
-        for (const std::string& note : shown_.notes) shows_.tell(page, "notice", note);
+      show(std::move(open.model));
       open.answer({});
     } catch (const std::exception& e) {
       open.answer({.error = e.what()});
     }
     return true;
+  }
+  // Shows a model in place of the present one. Throws geo::InputError, BadMessage.
+  void show(ModelFile model) {
+    if (!options_.open) throw BadMessage("no model can be opened here");
+    Shown opened = options_.open(model);
+    if (model.tension > 1) opened.session->tighten(model.tension);
+    opened.model = {.name = std::move(model.name), .bytes = std::move(model.bytes)};
+    opened.from_page = true;
+    shown_ = std::move(opened);
+    release_free_memory();
+    begin();
+    for (const ClientId page : pages_)
+      for (const std::string& note : shown_.notes) shows_.tell(page, "notice", note);
   }
   bool obey(ClientId page, Command& command) {
     if (is_touch(command)) waits_ = false;
@@ -173,11 +191,23 @@ struct Turns::Impl {
   }
   bool obey_command(ClientId, const Set& c) {
     session().obey(c);
+    if (c.tension) {
+      restart();
+      wait();
+    }
     return true;
   }
   bool obey_command(ClientId, const Blow& c) {
     session().obey(c);
     restart();
+    return true;
+  }
+  bool obey_command(ClientId, const Show& c) {
+    try {
+      show(gallery_model(c.name));
+    } catch (const geo::InputError& e) {
+      throw BadMessage(e.what());
+    }
     return true;
   }
   bool obey_command(ClientId, const Undo&) {
@@ -222,13 +252,12 @@ struct Turns::Impl {
   void publish() {
     auto s = std::make_shared<Snapshot>();
     s->number = ++number_;
-    session().show(*s);
+    session().show(*s, shows_.wants_stress());
     const geo::Simulation& run = session().run();
     if (shows_.wants_nodes()) {
       s->nodes = run.body().nodes.position;
       for (std::size_t i = 0; i < s->nodes.size(); ++i) s->nodes[i] += run.state().motion.displacement[i];
     }
-    if (shows_.wants_stress()) s->stress = geo::von_mises_stress(run.solid(), run.body().nodes, run.state().motion);
     if (const auto asked = shows_.graphs_wanted(); asked != graphs_) {
       graphs_ = asked;
       graph_ = edges();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "live/inbox.h"
+#include "live/model_file.h"
 #include "live/pages.h"
 #include "live/session.h"
 
@@ -21,13 +22,15 @@ struct Shown {
   /// Time stands still, and nothing weighs, until a hand touches the body; after a reset, too.
   bool waits = false;
   std::vector<std::string> notes = {};  ///< sentences for each page that comes
+  ModelFile model = {};                 ///< as it was opened, without files beside it; empty: a scene
+  bool from_page = false;               ///< the model is no file here: a recording names it without a folder
 };
 
 struct LoopOptions {
   double linger = 30;                  ///< s without a page before the loop ends; 0: never
   std::function<bool()> keep_on = {};  ///< asked several times a second; false ends the loop
-  /// Opens a model from the bytes of a file with this name. Throws geo::InputError.
-  std::function<Shown(const std::string& name, std::string bytes)> open = {};
+  /// Makes a run of a model. Throws geo::InputError.
+  std::function<Shown(const ModelFile& model)> open = {};
 };
 
 enum class LoopEnd {

@@ -29,10 +29,18 @@ std::optional<std::string> PageView::next(const std::shared_ptr<const Snapshot>&
     awaited_ = ++sequence_;
     return encode_graph(s, sequence_);
   }
-  if (s.number == sent_) return {};
+  if (rest_ && s.look && s.look != look_) {
+    look_ = s.look;
+    awaited_ = ++sequence_;
+    return encode_look(s, sequence_);
+  }
+  if (s.number == sent_ && known_) return {};
   const auto taken = s.taken.find(id_);
-  const Content content{
-      .sequence = ++sequence_, .nodes = nodes, .stress = stress, .taken = taken == s.taken.end() ? 0 : taken->second};
+  const Content content{.sequence = ++sequence_,
+                        .nodes = nodes,
+                        .stress = stress,
+                        .taken = taken == s.taken.end() ? 0 : taken->second,
+                        .rest = rest_};
   const bool knows = known_ && scene_ == s.scene;  // another scene where another model was opened
   std::string message = knows ? encode_frame(s, *known_, content) : encode_state(s, content);
   known_ = s.topology;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "live/snapshot.h"
 
@@ -28,6 +29,10 @@ class PageView {
   void ask_graph(std::uint64_t number) { graph_asked_ = number; }
 
   bool nodes = false, stress = false;  ///< whether frames have these
+  /// Whether the page receives places in the material, and colours. All is then sent anew.
+  void want_rest(bool on) {
+    if (std::exchange(rest_, on) != on) known_ = nullptr;
+  }
 
  private:
   ClientId id_;
@@ -37,6 +42,8 @@ class PageView {
   std::shared_ptr<const Topology> known_;
   std::shared_ptr<const std::string> scene_;
   std::uint64_t sent_ = 0;
+  bool rest_ = false;
+  std::shared_ptr<const std::string> look_;   // that the page has
   std::optional<std::uint64_t> graph_asked_;  // number of the request that is not answered
 };
 

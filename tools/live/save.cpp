@@ -24,11 +24,18 @@ void write_pieces(std::ostream& out, const Session& session) {
   labels.names = geo::piece_names(pieces.count);
   geo::GlbOptions options;
   options.z_up = sim::up_axis(session.original().gravity) != 'Y';
-  geo::write_glb(out, geo::make_chunks(surface, pieces, {}, 1, moved), geo::find_bonds(surface, pieces, moved), labels,
-                 options);
+  geo::TriangleMesh model = session.setup().models.all;
+  model.attributes.library = session.setup().materials;
+  geo::write_glb(out, geo::make_chunks(surface, pieces, model, 1, moved), geo::find_bonds(surface, pieces, moved),
+                 labels, options);
 }
 
 }  // namespace
+
+bool is_save_format(const std::string& format) {
+  return format == "kerf" || format == "ply" || format == "glb" || format == "stl" || format == "toml" ||
+         format == "model";
+}
 
 std::string saved_file(const Session& session, const std::string& format, const std::string& folder) {
   std::ostringstream out;

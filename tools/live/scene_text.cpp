@@ -70,6 +70,7 @@ std::string scene_text(const Session& session, const std::string& name, std::uin
   geo::Box3 box;
   for (const geo::Vec3& p : body.nodes.position) box.add(p);
   const double coarsest = *std::max_element(body.nodes.spacing.begin(), body.nodes.spacing.end());
+  constexpr double most_dent = 0.1;  // of the resistance over Young's modulus, in node spacings (docs/formats.md)
   const double young = scene.material.young;
   Json bodies = Json::array(), blades = Json::array();
   for (const geo::SceneBody& b : scene.bodies) bodies.push_back(b.name);
@@ -88,7 +89,11 @@ std::string scene_text(const Session& session, const std::string& name, std::uin
             {"blades", blades},
             {"obstacles", obstacles_of(scene)},
             {"ground", nullptr},
-            {"options", {{"young", {young / 30, young * 30}}, {"friction", {0, 1}}, {"gravity", {0, 2}}}}};
+            {"options",
+             {{"young", {young / 30, young * 30}},
+              {"friction", {0, 1}},
+              {"gravity", {0, 2}},
+              {"resistance", {0, most_dent * young * coarsest}}}}};
   if (scene.ground)
     text["ground"] = {{"point", point(scene.ground_point)}, {"normal", point(scene.ground_normal.normalized())}};
   return text.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -133,7 +138,10 @@ std::string statistics_text(const Session& session, const Pace& pace) {
               {"gravity", point(session.gravity())},
               {"friction", frictions_of(now).second},
               {"friction_least", frictions_of(now).first},
-              {"damping", now.material.damping}}}};
+              {"damping", now.material.damping},
+              {"tension", session.original().prestretch.skin},
+              {"resistance", session.hands().edges().resistance},
+              {"dullness", session.hands().edges().friction}}}};
   const auto moves = [](const geo::SceneObstacle& o) { return !o.motion.keys.empty(); };
   if (std::any_of(now.obstacles.begin(), now.obstacles.end(), moves)) {
     text["obstacles"] = Json::array();

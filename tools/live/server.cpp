@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cctype>
+#include <charconv>
 #include <chrono>
 #include <map>
 #include <mutex>
@@ -22,6 +23,7 @@
 
 #include <kerf/error.h>
 #include "live/page_view.h"
+#include "live/save.h"
 
 namespace live {
 
@@ -69,7 +71,8 @@ std::string plain_name(std::string name) {
   std::replace_if(
       name.begin(), name.end(),
       [](unsigned char c) { return c > 126 || !(std::isalnum(c) || c == '-' || c == '_' || c == '.'); }, '_');
-  return name.empty() ? "body" : name.substr(0, 80);
+  constexpr std::size_t longest = 80;
+  return name.empty() ? "body" : name.size() <= longest ? name : name.substr(name.size() - longest);  // with its ending
 }
 
 // Text of an address, whose %XX are bytes.
@@ -82,6 +85,34 @@ std::string unescaped(std::string_view text) {
     i += is_escape ? 2 : 0;
   }
   return result;
+}
+
+// The files of a request to open a model, "/open?name=NAME&beside=NAME:BYTES&…". The body has the
+// model, then those beside it, in this order. Nothing where their sizes do not fit.
+std::optional<ModelFile> model_of(std::string_view target, std::string body) {
+  constexpr std::string_view mark = "&beside=";
+  const auto begin = target.find("name=") + 5, end = target.find(mark, begin);
+  ModelFile model{.name = unescaped(target.substr(begin, end - begin))};
+  std::vector<BesideFile>& beside = model.beside.emplace();
+  std::vector<std::size_t> sizes;
+  std::size_t total = 0;
+  for (auto at = end; at != target.npos; at = target.find(mark, at + 1)) {
+    const auto rest = target.substr(at + mark.size(), target.find(mark, at + 1) - at - mark.size());
+    const auto colon = rest.rfind(':');
+    std::size_t size = 0;
+    const auto* last = rest.data() + rest.size();
+    if (colon == rest.npos || std::from_chars(rest.data() + colon + 1, last, size).ptr != last || size > body.size())
+      return {};
+    beside.push_back({unescaped(rest.substr(0, colon)), {}});
+    sizes.push_back(size);
+    total += size;
+  }
+  if (total > body.size()) return {};
+  std::size_t at = body.size() - total;
+  for (std::size_t i = 0; i < sizes.size(); at += sizes[i++]) beside[i].bytes = body.substr(at, sizes[i]);
+  body.resize(body.size() - total);
+  model.bytes = std::move(body);
+  return model;
 }
 
 }  // namespace
@@ -237,6 +268,7 @@ class Server::Impl::Link : public std::enable_shared_from_this<Link> {
     if (const auto* want = std::get_if<Want>(&command)) {
       if (want->nodes) want_nodes(*want->nodes);
       if (want->stress) want_stress(*want->stress);
+      if (want->rest) view_.want_rest(*want->rest);
       if (want->graph) view_.ask_graph(++hub_.graphs_wanted);
     }
     if (!hub_.inbox.put({id_, std::move(command)})) tell("error", "the simulation is busy; the message is left out");
@@ -315,9 +347,10 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
   }
   void open() {
     const std::string target(view(parser_.get().target()));
-    const std::string name = unescaped(target.substr(target.find("name=") + 5));
+    std::optional<ModelFile> model = model_of(target, std::move(parser_.get().body()));
+    if (!model) return send(http::status::bad_request, "the sizes of the files beside the model do not fit");
     const auto number = wait();
-    Open open{name, std::move(parser_.get().body()), [hub = &hub_, number](Answer answer) {
+    Open open{std::move(*model), [hub = &hub_, number](Answer answer) {
                 hub->pass_on(number, [answer = std::move(answer)](Visit& visit) {
                   if (answer.error.empty()) return visit.send(http::status::ok, "opened");
                   visit.send(http::status::unprocessable_entity, answer.error);
@@ -339,19 +372,17 @@ class Server::Impl::Visit : public std::enable_shared_from_this<Visit> {
     send(http::status::service_unavailable, "the simulation is busy");
   }
   void save(const std::string& format) {
-    if (format != "kerf" && format != "ply" && format != "glb" && format != "stl" && format != "toml")
-      return send(http::status::not_found, "as=kerf, ply, glb, stl or toml");
+    if (!is_save_format(format)) return send(http::status::not_found, save_formats);
     const auto number = wait();
-    Save save{format, [hub = &hub_, number, format](Answer answer) {
-                hub->pass_on(number, [format, answer = std::move(answer)](Visit& visit) mutable {
-                  visit.send_file(format, std::move(answer));
-                });
+    Save save{format, [hub = &hub_, number](Answer answer) {
+                hub->pass_on(
+                    number, [answer = std::move(answer)](Visit& visit) mutable { visit.send_file(std::move(answer)); });
               }};
     give(number, std::move(save));
   }
-  void send_file(const std::string& format, Answer answer) {
+  void send_file(Answer answer) {
     if (!answer.error.empty()) return send(http::status::internal_server_error, answer.error);
-    file_ = plain_name(answer.name) + "." + format;
+    file_ = plain_name(answer.name);
     send(http::status::ok, std::move(answer.bytes), "application/octet-stream");
   }
   void send(http::status status, std::string body, const std::string& type = "text/plain; charset=utf-8") {

@@ -27,9 +27,11 @@ void adapt_scene(geo::Scene& scene, double rate, bool blades) {
 
 Session::Session(const sim::Setup& setup, const geo::Progress& progress, const SessionBounds& bounds)
     : setup_(setup),
+      loaded_(setup.scene.loaded),
       bounds_(bounds),
       start_(sim::first_checkpoint(setup, progress)),
       run_(sim::run_from(setup.scene, start_)),
+      view_(Painter(setup.models.all, setup.materials)),
       hands_(run_, view_, geo::bounding_box(setup.models.all).diagonal()),
       history_(bounds.undo),
       faces_(run_.body().surface.face_count()) {
@@ -62,7 +64,34 @@ void Session::obey(const Pin& pin) {
   hands_.obey(pin);
 }
 
+void Session::tighten(double stretch) {
+  sim::Setup tight = setup_;
+  const std::vector<double>& spacing = run_.body().nodes.spacing;
+  const double depth = *std::max_element(spacing.begin(), spacing.end());
+  const auto set = [&](geo::Prestretch& p) {
+    p.skin = stretch;
+    if (p.depth == 0) p.depth = depth;
+  };
+  set(tight.scene.prestretch);
+  for (geo::SceneBody& body : tight.scene.bodies)
+    if (body.prestretch) set(*body.prestretch);
+  tight.scene.loaded = loaded_ || stretch > 1;
+  try {
+    start_ = sim::first_checkpoint(tight, {});
+  } catch (const geo::InputError& e) {
+    throw BadMessage(e.what());
+  }
+  setup_ = std::move(tight);
+  reset();
+}
+
 void Session::obey(const Set& set) {
+  EdgeKind edges = hands_.edges();
+  edges.resistance = set.resistance.value_or(edges.resistance);
+  edges.friction = set.dullness.value_or(edges.friction);
+  hands_.set_edges(edges);
+  if (set.tension) tighten(*set.tension);
+  if (!set.young && !set.damping && !set.gravity && !set.friction) return;
   if (changes_.size() >= bounds_.changes) throw BadMessage("the recording is full; save it and reset");
   geo::SceneChange change;
   change.young = set.young;
@@ -135,6 +164,7 @@ void Session::resume(const geo::Scene& scene, const std::string& checkpoint, int
   if (frame > 0 && (checkpoints_.empty() || checkpoints_.back() != frame)) checkpoints_.push_back(frame);
   hands_.begin_anew(std::move(beside.lasting));
   view_.clear();
+  stress_.clear();
   // The old run goes first. Otherwise the new one fills the gaps that the old one leaves, and keeps
   // the pages around them.
   { const geo::Simulation ended = std::move(run_); }
@@ -172,7 +202,7 @@ void Session::redo() {
 }
 
 void Session::withhold_weight() {
-  if (withheld_ || run_.scene().gravity.isZero() || changes_.size() >= bounds_.changes) return;
+  if (withheld_ || setup_.scene.loaded || run_.scene().gravity.isZero() || changes_.size() >= bounds_.changes) return;
   const geo::Vec3 gravity = run_.scene().gravity;
   change_run({.gravity = geo::Vec3(geo::Vec3::Zero())});
   withheld_ = gravity;
@@ -203,7 +233,14 @@ std::string Session::advance(bool whole) {
     change_run({.gravity = *withheld_});
     withheld_.reset();
   }
-  const auto save = [&] { history_.add({.mark = scene().mark(run_.state()), .beside = beside()}, state_bytes()); };
+  bool saved = false;  // strokes that begin in one frame are one step of undo
+  const auto save = [&] {
+    if (saved)
+      history_.join();
+    else
+      history_.add({.mark = scene().mark(run_.state()), .beside = beside()}, state_bytes());
+    saved = true;
+  };
   hands_.move_on(whole, save);
   try {
     stats_ = run_.advance_frame();
@@ -237,12 +274,15 @@ geo::Scene Session::recording() const {
   return scene;
 }
 
-void Session::show(Snapshot& snapshot) {
+void Session::show(Snapshot& snapshot, bool stress) {
   view_.update(run_);
   view_.show(snapshot);
   snapshot.time = run_.state().time;
   snapshot.node_count = run_.body().nodes.size();
   snapshot.taken = taken_;
+  if (!stress) return;
+  snapshot.stress = geo::von_mises_stress(run_.solid(), run_.body().nodes, run_.state().motion);
+  snapshot.skin_stress = stress_.at_vertices(run_, snapshot.stress, view_);
 }
 
 std::vector<std::pair<std::vector<geo::Vec3>, double>> Session::edges() const {

@@ -16,6 +16,7 @@
 #include "live/piece_count.h"
 #include "live/scene_mark.h"
 #include "live/snapshot.h"
+#include "live/surface_stress.h"
 #include "live/surface_view.h"
 #include "live/undo.h"
 #include "sim/setup.h"
@@ -46,6 +47,10 @@ class Session {
   void obey(ClientId page, const Grab& grab);
   void obey(const Pin& pin);
   void obey(const Set& set);
+  /// Begins anew with a skin that is stretched by this factor, 1: not at all, in a layer as deep as
+  /// the nodes are apart. The body keeps its shape until it is cut. Throws BadMessage where it finds
+  /// no rest.
+  void tighten(double stretch);
   /// Likewise. It counts as a stroke that has cut.
   void obey(const Blow& blow);
   /// Goes back to before the last stroke that has cut. Throws BadMessage without one.
@@ -53,7 +58,7 @@ class Session {
   /// Goes to where the last undo left. Throws BadMessage without one, or after a new cut.
   void redo();
   /// Weight acts from when no stroke is in the body, but not yet: a body at rest without weight
-  /// does not sag under the knife that cuts it first.
+  /// does not sag under the knife that cuts it first. A body that rests in its weight keeps it.
   void withhold_weight();
   /// Begins anew.
   void reset();
@@ -87,8 +92,10 @@ class Session {
   const geo::Scene& original() const { return setup_.scene; }
   /// The scene that gives this run, with everything that hands did.
   geo::Scene recording() const;
-  /// Fills positions, topology and inputs taken.
-  void show(Snapshot& snapshot);
+  /// Fills positions, topology, colours and inputs taken; stress of nodes and skin where asked for.
+  void show(Snapshot& snapshot, bool stress = false);
+  /// The models and their materials.
+  const sim::Setup& setup() const { return setup_; }
   /// The hands in the run.
   const Hands& hands() const { return hands_; }
   /// The strokes that can be undone and made again.
@@ -122,10 +129,12 @@ class Session {
   bool end_hands();
 
   sim::Setup setup_;
+  bool loaded_;  // whether the scene says so by itself
   SessionBounds bounds_;
   std::string start_;  // checkpoint of frame 0
   geo::Simulation run_;
   SurfaceView view_;
+  SurfaceStress stress_;
   Hands hands_;
   StrokeHistory history_;
   PieceCount pieces_;

@@ -4,7 +4,7 @@
 namespace live {
 
 void SurfaceView::update(const geo::Simulation& run) {
-  slots_.update(run.body().surface);
+  slots_.update(run.body().surface, painter_);
   const std::vector<geo::Vec3> surface = run.state().surface.empty() ? run.surface().vertices : run.state().surface;
   const auto& slot = slots_.slot_of_living();
   positions_.assign(slots_.topology()->vertices, surface.empty() ? geo::Vec3(geo::Vec3::Zero()) : surface[0]);
@@ -14,6 +14,7 @@ void SurfaceView::update(const geo::Simulation& run) {
 void SurfaceView::show(Snapshot& snapshot) const {
   snapshot.topology = slots_.topology();
   snapshot.positions = positions_;
+  snapshot.look = look_;
 }
 
 PickedPoint SurfaceView::pick(const geo::Complex& surface, const Spot& spot) const {

@@ -1,10 +1,15 @@
 // The deformed surface as pages see it and point at it.
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <kerf/simulation.h>
 #include "live/command.h"
+#include "live/painter.h"
 #include "live/snapshot.h"
 #include "live/topology.h"
 
@@ -20,11 +25,19 @@ struct PickedPoint {
 /// Slots and positions as of the last update().
 class SurfaceView {
  public:
+  SurfaceView() = default;
+  /// A view with the colours of a model.
+  explicit SurfaceView(Painter painter) : painter_(std::move(painter)), look_(painter_.look()) {}
+
   /// Follows a run.
   void update(const geo::Simulation& run);
   /// Forgets the run: the next update() may be of any other one.
   void clear() { slots_.clear(); }
-  /// Fills topology and positions.
+  /// The triangles as of the last update().
+  const Topology& topology() const { return *slots_.topology(); }
+  /// The slot of a surface vertex; none where it does not live.
+  std::optional<std::uint32_t> slot_of(geo::SurfaceVertexId vertex) const { return slots_.slot(vertex); }
+  /// Fills topology, positions and colours.
   void show(Snapshot& snapshot) const;
 
   /// The material at a point of the surface. Throws BadMessage where no triangle is there now.
@@ -35,6 +48,8 @@ class SurfaceView {
   const geo::Vec3* place_of(geo::SurfaceVertexId vertex) const;
 
  private:
+  Painter painter_;
+  std::shared_ptr<const std::string> look_;
   Slots slots_;
   std::vector<geo::Vec3> positions_;  // per vertex slot
 };

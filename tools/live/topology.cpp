@@ -19,6 +19,8 @@ TopologyChange change_between(const Topology& from, const Topology& to) {
       change.added.push_back(s);
     }
   }
+  for (std::uint32_t v = 0; v < to.rest.size(); ++v)
+    if (v >= from.rest.size() || from.rest[v] != to.rest[v]) change.placed.push_back(v);
   return change;
 }
 
@@ -27,6 +29,7 @@ void Slots::clear() {
   vertex_slot_.clear();
   side_slot_.clear();
   side_of_slot_.clear();
+  painted_side_.clear();
   free_vertices_.clear();
   free_faces_.clear();
   vertex_slots_ = 0;
@@ -54,7 +57,40 @@ std::uint32_t take(std::vector<std::uint32_t>& free, std::uint32_t& count) {
 
 }  // namespace
 
-bool Slots::update(const geo::Complex& complex) {
+// Triangles, patches and paint of a topology. Slots that have kept their side keep their paint.
+void Slots::fill(Topology& next, const geo::Complex& complex, const Painter& painter) const {
+  const std::size_t faces = side_of_slot_.size();
+  next.triangle.assign(faces, {0, 0, 0});
+  next.patch.assign(faces, 0);
+  if (!painter.empty()) next.paint.resize(faces);
+  std::vector<geo::Side> fresh;
+  std::vector<std::uint32_t> fresh_slot;
+  for (std::uint32_t slot = 0; slot < faces; ++slot) {
+    const geo::Side side = this->side(slot);
+    if (!side.face.valid()) continue;
+    geo::Triangle& t = next.triangle[slot];
+    for (int k = 0; k < 3; ++k) t[static_cast<std::size_t>(k)] = vertex_slot_[complex.surface_vertex(side, k).index()];
+    if (side.which == 1) std::swap(t[1], t[2]);
+    next.patch[slot] = static_cast<std::uint8_t>(std::min(complex.face(side.face).crack, 255));
+    if (painter.empty() || next.patch[slot] != 0) continue;
+    const bool was = topology_ && slot < topology_->paint.size() && slot < painted_side_.size() &&
+                     painted_side_[slot] == side_of_slot_[slot];
+    if (was) {
+      next.paint[slot] = topology_->paint[slot];
+    } else {
+      fresh.push_back(side);
+      fresh_slot.push_back(slot);
+    }
+  }
+  const std::vector<TrianglePaint> paint = painter.paint(complex, fresh);
+  for (std::size_t i = 0; i < fresh.size(); ++i) next.paint[fresh_slot[i]] = paint[i];
+  next.rest.assign(vertex_slots_, Eigen::Vector3f::Zero());
+  for (std::uint32_t v = 0; v < vertex_slot_.size(); ++v)
+    if (vertex_slot_[v] != none)
+      next.rest[vertex_slot_[v]] = complex.point(complex.site(geo::SurfaceVertexId(v))).cast<float>();
+}
+
+bool Slots::update(const geo::Complex& complex, const Painter& painter) {
   const std::array<std::uint32_t, 3> now{complex.face_count(), complex.surface_vertex_count(),
                                          complex.live_face_count()};
   if (topology_ && now == seen_) return false;
@@ -88,16 +124,8 @@ bool Slots::update(const geo::Complex& complex) {
       side_of_slot_.resize(faces, none);
       side_of_slot_[side_slot_[s]] = s;
     }
-  next->triangle.assign(faces, {0, 0, 0});
-  next->patch.assign(faces, 0);
-  for (std::uint32_t slot = 0; slot < faces; ++slot) {
-    const geo::Side side = this->side(slot);
-    if (!side.face.valid()) continue;
-    geo::Triangle& t = next->triangle[slot];
-    for (int k = 0; k < 3; ++k) t[static_cast<std::size_t>(k)] = vertex_slot_[complex.surface_vertex(side, k).index()];
-    if (side.which == 1) std::swap(t[1], t[2]);
-    next->patch[slot] = static_cast<std::uint8_t>(std::min(complex.face(side.face).crack, 255));
-  }
+  fill(*next, complex, painter);
+  painted_side_ = side_of_slot_;
   next->vertices = vertex_slots_;
   next->revision = ++revision_;
   topology_ = std::move(next);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <kerf/complex.h>
+#include "live/painter.h"
 
 namespace live {
 
@@ -18,11 +19,14 @@ struct Topology {
   std::uint32_t vertices = 0;           ///< slots of vertices
   std::vector<geo::Triangle> triangle;  ///< per slot: vertex slots
   std::vector<std::uint8_t> patch;      ///< per slot: 0 skin, else the crack, at most 255
+  std::vector<Eigen::Vector3f> rest;    ///< per vertex slot: its place in the material
+  std::vector<TrianglePaint> paint;     ///< per slot; empty where the model has no colours
 };
 
 /// Changes from one topology to a later one.
 struct TopologyChange {
   std::vector<std::uint32_t> removed, added;  ///< slots: now empty; of a new triangle. Ascending
+  std::vector<std::uint32_t> placed;          ///< vertex slots: new, or at another place of the material. Ascending
 };
 TopologyChange change_between(const Topology& from, const Topology& to);
 
@@ -30,8 +34,8 @@ TopologyChange change_between(const Topology& from, const Topology& to);
 class Slots {
  public:
   /// Brings the slots up to date; ids of the complex only grow between two calls. Whether anything
-  /// changed.
-  bool update(const geo::Complex& complex);
+  /// changed. `painter` is the same in all calls, up to clear().
+  bool update(const geo::Complex& complex, const Painter& painter = {});
   /// Forgets the complex: the next update() may be of any other one.
   void clear();
   /// The triangles now. The object stays as it is when the slots change.
@@ -44,11 +48,14 @@ class Slots {
   geo::Side side(std::uint32_t slot) const;
 
  private:
+  void fill(Topology& next, const geo::Complex& complex, const Painter& painter) const;
+
   static constexpr std::uint32_t none = ~0u;
   std::array<std::uint32_t, 3> seen_{none, none, none};  // counts of the complex at the last update
   std::vector<std::uint32_t> vertex_slot_, living_;      // per surface vertex; see slot_of_living()
   std::vector<std::uint32_t> side_slot_;                 // per side: 2 · face + which
   std::vector<std::uint32_t> side_of_slot_;              // per slot
+  std::vector<std::uint32_t> painted_side_;              // per slot: as in the last topology
   std::vector<std::uint32_t> free_vertices_, free_faces_;
   std::uint32_t vertex_slots_ = 0, revision_ = 0;
   std::shared_ptr<const Topology> topology_;

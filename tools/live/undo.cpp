@@ -22,10 +22,17 @@ void StrokeHistory::drop_states() {
   }
 }
 
+void StrokeHistory::join() {
+  ++saved_.back().strokes;
+  ++saved_.back().blades;
+}
+
 void StrokeHistory::forget(std::size_t blade) {
   // A blow before the stroke has the same mark.
   for (std::size_t s = saved_.size(); s-- > 0;) {
-    if (saved_[s].mark.blades != blade) continue;
+    BeforeStroke& before = saved_[s];
+    if (blade < before.mark.blades || blade >= before.mark.blades + before.blades) continue;
+    if (--before.strokes > 0) return;
     saved_states_.erase(s);
     saved_.erase(saved_.begin() + static_cast<std::ptrdiff_t>(s));
     return;

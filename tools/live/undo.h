@@ -25,6 +25,8 @@ struct Beside {
 struct BeforeStroke {
   SceneMark mark;
   Beside beside;
+  std::size_t strokes = 1;  ///< that began then, without those that have cut nothing
+  std::size_t blades = 1;   ///< that they added
 };
 
 /// A stroke that was undone: the run before it, and what the run before undo had in addition.
@@ -49,6 +51,9 @@ class StrokeHistory {
 
   /// A stroke begins, in this state.
   void add(BeforeStroke before, std::string state);
+  /// Another stroke begins in the state that was added last: one undo takes both back.
+  /// Precondition: there is one.
+  void join();
   /// A stroke that has cut nothing need not be undone. `blade`: the one that it added.
   void forget(std::size_t blade);
   /// Nothing can be made again: there is a new cut.

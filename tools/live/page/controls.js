@@ -14,17 +14,18 @@ function set(key, value) {
   if (key === "tool") showTool();
   if (key === "depth") showDepth();
   if (key === "cells") showCells();
-  if (key === "stress" && value && state.skin === 1) set("skin", 0.2);
   if ((key === "nodes" || key === "edges") && value && state.skin === 1) set("skin", 0.2);
-  if (["nodes", "edges", "stress"].includes(key) && !state.nodes && !state.edges && !state.stress && state.skin === 0.2) set("skin", 1);
+  if (["nodes", "edges"].includes(key) && !state.nodes && !state.edges && state.skin === 0.2) set("skin", 1);
   if (key === "look") surface.dress();
+  if (key === "paint") surface.repaint();
   if (key === "plotted") $("plots").hidden = !value;
   changed();
 }
 const does = {
   knife: "Drag across the body: the cut follows.", scalpel: "Drag along the surface: an edge cuts in.", grab: "Drag a place of the body. With Ctrl, or a second finger, it stays held.",
+  lasso: "Draw a line around what is to be cut out.", clamp: "Click two places: they are drawn together.",
   pin: "Click a place to hold it; click again to let go.",
-  break: "Click a place: the piece there breaks.", orbit: "Drag to turn, two fingers or the wheel to zoom.",
+  break: "Click a place: the piece there breaks.", orbit: "Drag to turn, two fingers or the wheel to zoom. A click on a piece: the view goes with it.",
 };
 function showTool() {
   for (const button of document.querySelectorAll("[data-tool]")) button.setAttribute("aria-pressed", String(button.dataset.tool === state.tool));
@@ -36,12 +37,13 @@ const showDepth = () => $("depth-value").textContent = state.depth >= 1 ? "throu
 const showCells = () => $("cells-value").textContent = String(state.cells);
 
 // Sliders of the material: what the program has, shown unless a hand is on the slider.
-const values = { young: null, gravity: null, friction: null, damping: null };
-const touched = { young: 0, gravity: 0, friction: 0, damping: 0 };
+const values = { young: null, gravity: null, friction: null, damping: null, tension: null, resistance: null, dullness: null };
+const touched = Object.fromEntries(Object.keys(values).map((name) => [name, 0]));
 const logarithmic = { young: true };
-const units = { young: pascals, gravity: (g) => "× " + g.toFixed(2), friction: (f) => f.toFixed(2), damping: (d) => d.toPrecision(2) + " /s" };
+const units = { young: pascals, gravity: (g) => "× " + g.toFixed(2), friction: (f) => f.toFixed(2), damping: (d) => d.toPrecision(2) + " /s",
+  tension: (s) => s < 1.005 ? "none" : "× " + s.toFixed(2), resistance: (r) => r === 0 ? "sharp" : Number(r.toPrecision(2)).toLocaleString("en") + " J/m²", dullness: (d) => d.toFixed(2) };
 function rangeOf(name) {
-  return live.told?.options?.[name] ?? { young: [1e3, 1e7], gravity: [0, 2], friction: [0, 1], damping: [0, 10] }[name];
+  return live.told?.options?.[name] ?? { young: [1e3, 1e7], gravity: [0, 2], friction: [0, 1], damping: [0, 10], tension: [1, 1.6], resistance: [0, 1e4], dullness: [0, 1] }[name];
 }
 function toSlider(name, value) {
   const [lo, hi] = rangeOf(name);
@@ -64,16 +66,18 @@ function showValues(said) {
   const least = said.friction_least ?? said.friction;
   if (performance.now() - touched.friction >= 600 && least !== said.friction) $("friction-value").textContent = [least, said.friction].map((f) => Number(f.toFixed(2))).join("–");
 }
-function slide(name) {
+function slide(name, last = false) {
   const value = fromSlider(name, Number($(name).value));
   touched[name] = performance.now();
   $(name + "-value").textContent = units[name](value);
+  if (name === "tension" && !last) return;  // each value is a new beginning
   send({ set: { [name]: name === "gravity" ? live.told.gravity.map((x) => x * value) : value } });
 }
 
 const orders = {
   undo: () => send({ undo: true }), redo: () => send({ redo: true }), reset: () => send({ reset: true }), pause: () => send({ pause: !live.stats.paused }), step: () => send({ step: true }),
   help: () => $("help").showModal(), home: resetView, menu: toggleMenu, save: () => savePicture(),
+  gallery: () => $("bodies").showModal(), record: () => recorder.toggle(),
 };
 function resetView() {
   Object.assign(view, home), view.target.set(0, 0, 0);
@@ -105,18 +109,18 @@ function savePicture() {
 }
 
 const keys = {
-  k: () => set("tool", "knife"), l: () => set("tool", "scalpel"), g: () => set("tool", "grab"), p: () => set("tool", "pin"), b: () => set("tool", "break"), o: () => set("tool", "orbit"),
+  k: () => set("tool", "knife"), l: () => set("tool", "scalpel"), a: () => set("tool", "lasso"), j: () => set("tool", "clamp"), i: orders.gallery, v: orders.record, g: () => set("tool", "grab"), p: () => set("tool", "pin"), b: () => set("tool", "break"), o: () => set("tool", "orbit"),
   u: orders.undo, U: orders.redo, r: orders.reset, " ": orders.pause, ".": orders.step, h: resetView, m: toggleMenu, "?": orders.help,
   n: () => set("nodes", !state.nodes), e: () => set("edges", !state.edges), t: () => set("stress", !state.stress), w: () => set("wire", !state.wire),
   c: () => set("walls", !state.walls), s: () => set("skin", state.skin === 1 ? 0.2 : state.skin > 0 ? 0 : 1), d: () => set("shadows", !state.shadows),
-  "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1 / 0.88), Escape: () => (hand.stroke ? endStroke() : cursor.hide()),
+  "+": () => zoom(0.88), "=": () => zoom(0.88), "-": () => zoom(1 / 0.88), Escape: () => (clamp.leave(), hand.stroke ? endStroke() : cursor.hide()),
   "[": () => set("depth", Math.max(0.05, Number((state.depth - 0.05).toFixed(2)))), "]": () => set("depth", Math.min(1, Number((state.depth + 0.05).toFixed(2)))),
 };
 const arrows = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 function listenToKeys() {
   document.addEventListener("keydown", (e) => {
-    if ($("help").open) return;
+    if (document.querySelector("dialog[open]")) return;
     if ((e.ctrlKey || e.metaKey) && e.key === "z") return e.preventDefault(), orders.undo();
     if ((e.ctrlKey || e.metaKey) && (e.key === "Z" || e.key === "y")) return e.preventDefault(), orders.redo();
     if (e.key === "Enter" && !e.target.matches("button, input, a, select")) return e.preventDefault(), cursor.press(e.ctrlKey || e.metaKey);
@@ -141,12 +145,13 @@ function listenToControls() {
   });
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
-  for (const key of ["skin", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "cells", "look"]) {
+  for (const key of ["skin", "paint", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "cells", "look"]) {
     const control = $(key);
     show(key);
     control.addEventListener("input", () => set(key, control.type === "checkbox" ? control.checked : key === "look" ? control.value : Number(control.value)));
   }
   for (const name of Object.keys(values)) $(name).addEventListener("input", () => slide(name));
+  $("tension").addEventListener("change", () => slide("tension", true));
   $("wait").addEventListener("click", () => wire.open || connect());
 }
 
@@ -175,8 +180,8 @@ function begin() {
   followAddress();
   if (window.matchMedia("(max-width: 700px)").matches) document.body.classList.add("wide"), $("menu").setAttribute("aria-expanded", "false");
   plots.force = new Plot("force-plot", "#b5432a", newtons), plots.rate = new Plot("rate-plot", "#2464b4", String);
-  layers.push(surface, world, inside, { update() {}, beforeDraw: drawGhosts }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
-  listenToControls(), listenToKeys(), listenToPointer(), listenToFiles();
+  layers.push(surface, follow, world, inside, recorder, { update() {}, beforeDraw: drawGhosts }, { update() {}, beforeDraw: drawTrail }, { update() {}, afterDraw: (side => () => side.afterDraw())(new SideView()) }, { update() {}, beforeDraw: drawFigures });
+  listenToControls(), listenToKeys(), listenToPointer(), listenToFiles(), listenToGallery(), listenToRecorder();
   surface.dress();
   showTool(), showDepth(), showCells();
   $("plots").hidden = !state.plotted;

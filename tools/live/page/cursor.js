@@ -24,7 +24,6 @@ const cursor = {
   },
   // Enter; with Ctrl a grab stays.
   press(stays) {
-    if (state.tool === "orbit") return;
     if (!this.shown) return this.show();
     if (hand.stroke) {
       if (stays) keepHeld(hand.stroke);

@@ -20,13 +20,12 @@ async function openFiles(files) {
   const models = files.filter((file) => openable.test(file.name));
   if (models.length !== 1) return notice({ error: models.length === 0 ? `${files[0]?.name ?? "This"} cannot be opened here: drop a model (OBJ, PLY, STL, OFF or GLB)` : "Drop one model at a time" });
   const [file] = models;
-  if (file.size > largestModel << 20) return notice({ error: `${file.name} has more than ${largestModel} MB` });
+  if (files.reduce((sum, { size }) => sum + size, 0) > largestModel * 2 ** 20) return notice({ error: `${file.name} has more than ${largestModel} MB` });
   endStroke();
   $("wait").textContent = `Opening ${file.name} …`, $("wait").hidden = false;
   try {
-    const reason = await openModel(file);
+    const reason = await openModel(file, files.filter((other) => other !== file));
     if (reason !== "") notice({ error: reason });
-    else if (files.length > 1) notice({ notice: `Only ${file.name} is opened: materials and images are not shown` });
   } catch (problem) {
     notice({ error: `${file.name} could not be sent: ${problem.message}` });
   }

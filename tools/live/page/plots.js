@@ -22,15 +22,17 @@ class Plot {
 }
 const plots = { frames: [] };
 
-// A slow machine draws with less: without shadows, then with fewer pixels.
+// A slow machine draws with less: without shadows, then without reflections, with fewer pixels, without solid textures.
 const quality = {
-  shadows: true, pixels: 1, slow: 0,
+  shadows: true, coat: true, solids: true, pixels: 1, slow: 0,
   watch(rate) {
     const late = live.stats.fps > 20 && !live.stats.paused && rate < Math.min(20, 0.7 * live.stats.fps);
     this.slow = late && performance.now() > 3000 ? this.slow + 1 : 0;
     if (this.slow < 20) return;
     this.slow = 0;
     if (this.shadows && state.shadows) this.shadows = false, world.update();
+    else if (this.coat) this.coat = false, surface.dress();
+    else if (this.solids && state.look !== "clay" && this.pixels < 0.7) this.solids = false, surface.dress();
     else if (this.pixels > 0.5) this.pixels *= 0.8, fit();
   },
 };

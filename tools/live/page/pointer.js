@@ -18,7 +18,7 @@ function placesOf(e) {
 
 function listenToPointer() {
   const canvas = $("canvas");
-  let pending = null, spread = 0;
+  let pending = null, pressed = null, spread = 0;  // pressed: where the orbit tool was, for a click
   canvas.addEventListener("contextmenu", (e) => e.preventDefault());
   canvas.addEventListener("pointerdown", (e) => {
     canvas.setPointerCapture(e.pointerId);
@@ -26,10 +26,11 @@ function listenToPointer() {
     spread = 0;
     cursor.hide();
     if (pointers.size > 1 && hand.stroke?.kind === "grab") return spent.add(e.pointerId), keepHeld(hand.stroke);
-    if (pointers.size > 1) return pending = null, endStroke();  // a second finger: the eye moves
+    if (pointers.size > 1) return pending = pressed = null, endStroke();  // a second finger: the eye moves
     const grabs = state.tool === "grab", stays = grabs && (e.ctrlKey || e.metaKey);
     const tool = e.button === 0 && !e.shiftKey && !e.altKey && (stays || !e.ctrlKey);
-    if (!tool || state.tool === "orbit") return;
+    if (!tool) return;
+    if (state.tool === "orbit") return pressed = { x: e.offsetX, y: e.offsetY };
     if (grabs) {
       if (!beginStroke(e.offsetX, e.offsetY, e.pointerId)) return;
       spent.add(e.pointerId);
@@ -76,7 +77,8 @@ function listenToPointer() {
       if (e.ctrlKey || e.metaKey) keepHeld(hand.stroke);
       endStroke();
     } else if (pending && e.type === "pointerup") clickTools[state.tool]?.(e.offsetX, e.offsetY);
-    pending = null;
+    if (pressed && e.type === "pointerup" && Math.hypot(e.offsetX - pressed.x, e.offsetY - pressed.y) < slop) clickTools.orbit(e.offsetX, e.offsetY);
+    pending = pressed = null;
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);

@@ -29,7 +29,9 @@ function connect() {
 }
 
 // Opens a model; the reason where it cannot be opened, else an empty text.
-async function openModel(file) {
-  const answer = await fetch("open?name=" + encodeURIComponent(file.name), { method: "POST", body: file });
+// `beside`: its materials and images.
+async function openModel(file, beside) {
+  const named = beside.map(({ name, size }) => `&beside=${encodeURIComponent(name)}:${size}`).join("");
+  const answer = await fetch("open?name=" + encodeURIComponent(file.name) + named, { method: "POST", body: new Blob([file, ...beside]) });
   return answer.ok ? "" : (await answer.text()).trim();
 }

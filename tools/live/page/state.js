@@ -1,6 +1,6 @@
 // What is shown, and what is known of the simulation. Shown coordinates have the body's first box in the unit sphere.
 const state = {
-  tool: "knife", depth: 1, cells: 12, skin: 1, walls: true, wire: false, look: "clay", nodes: false, edges: false, stress: false, size: 1,
+  tool: "knife", depth: 1, cells: 12, skin: 1, walls: true, wire: false, look: "clay", paint: true, nodes: false, edges: false, stress: false, size: 1,
   shadows: true, plotted: true, clip: false, axis: 3, offset: 0, fill: false, selected: -1,
 };
 const about = { y_up: false, middle: [0, 0, 0], unit: 1 };
@@ -10,7 +10,8 @@ const live = {
   frame: null,     // the newest frame that is not yet drawn
   time: 0, revision: -1, vertices: 0, nodes: 0,
   position: new Float32Array(0),  // shown coordinates
-  node: null, stress: null, stressMost: 0,
+  rest: new Float32Array(0),      // places of the vertices in the material, likewise
+  node: null, stress: null, stressMost: 0, skinStress: null,
   pairs: null, asked: 0, stale: false,  // edges of the graph; when they were asked for, if an answer is due; whether the surface has changed since
 };
 
@@ -73,12 +74,13 @@ function takeFrame() {
   unpacked(frame.position, frame, live.position);
   live.node = frame.node ? unpacked(frame.node, frame, new Float32Array(3 * frame.nodes)) : null;
   live.stress = frame.stress ? Float32Array.from(frame.stress, (s) => s * frame.stressMost / 65535) : null;
+  live.skinStress = frame.skinStress ? Float32Array.from(frame.skinStress, (s) => s * frame.skinStressMost / 65535) : null;
   live.stressMost = frame.stressMost ?? 0;
   return true;
 }
 
 function sendWants(anew) {
-  const wants = { nodes: state.nodes || state.stress || state.edges, stress: state.stress, graph: state.edges };
+  const wants = { nodes: state.nodes || state.edges, stress: state.stress, graph: state.edges, rest: true };
   if (anew || JSON.stringify(wants) !== live.wants) live.asked = state.edges ? performance.now() : 0, live.stale = false, send({ want: wants });
   live.wants = JSON.stringify(wants);
 }

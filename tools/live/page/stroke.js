@@ -119,7 +119,7 @@ function beginStroke(x, y, pointer) {
   hand.stroke = { id, kind: state.tool, tool, ghost, sphere: tool.sphere ?? bodySphere(), pointer, last: message, pending: [], sentAt: performance.now() };
   hand.ghosts.push(ghost);
   hand.trail = [[x, y, performance.now()]];
-  sendInput(state.tool, { id: strokes, phase: "begin", ...message });
+  if (!tool.late) sendInput(state.tool, { id: strokes, phase: "begin", ...message });
   redraw();
   return true;
 }
@@ -141,6 +141,7 @@ function moveStroke(x, y) {
 // Sends the poses since the last message: the path between two frames is kept.
 function passOn(s) {
   clearTimeout(s.later);
+  if (s.tool.late) return;
   s.sentAt = performance.now();
   while (s.pending.length > 0) {
     const first = s.pending[0];
@@ -156,9 +157,25 @@ function endStroke() {
   if (!s) return;
   passOn(s);
   hand.stroke = null;
+  if (s.tool.late && !sendClosed(s)) return s.ghost.end(), notice({ notice: "Draw a line around what is to be cut out." });
   sendInput(s.kind, { id: s.id, phase: s.tool.ending ?? "end", ...s.last });
   s.ghost.end();
   redraw();
+}
+// Paths that are known only when they are drawn, as strokes of the knife that begin together. The last one is the stroke; its end is sent by the caller.
+// False: there is none.
+function sendClosed(s) {
+  const paths = s.tool.closed();
+  if (!paths) return false;
+  s.kind = "knife", s.tool.late = false;
+  const ids = paths.map((_, i) => (i === 0 ? s.id : ++strokes));
+  paths.forEach((path, i) => sendInput(s.kind, { id: ids[i], phase: "begin", ...path[0] }));
+  paths.forEach((path, i) => {
+    s.id = ids[i], s.pending = path.slice(1), s.last = path[path.length - 1];
+    passOn(s);
+    if (i + 1 < paths.length) sendInput(s.kind, { id: s.id, phase: "end", ...s.last });
+  });
+  return true;
 }
 function pinAt(x, y) {
   const { origin, ray } = rayAt(x, y), hit = surface.hit(origin, ray);

@@ -1,5 +1,5 @@
 // The messages of kerf-live: binary ones are read into what the layers draw; text messages are what the hand does.
-// Another file has the transport: connect(), transmit(text), openModel(file).
+// Another file has the transport: connect(), transmit(text), openModel(file, beside).
 const wire = { open: false, sequence: -1, held: null, input: 0, sent: new Map(), latency: 0, bytes: 0, messages: 0 };
 
 // Little-endian fields, one after the other.
@@ -32,20 +32,31 @@ function readFrame(r, flags) {
   frame.position = r.array(Uint16Array, 3 * frame.vertices), r.align();
   if (flags & 1) frame.node = r.array(Uint16Array, 3 * frame.nodes), r.align();
   if (flags & 2) frame.stressMost = r.f32(), frame.stress = r.array(Uint16Array, frame.nodes), r.align();
+  if (flags & 16) frame.skinStressMost = r.f32(), frame.skinStress = r.array(Uint16Array, frame.vertices), r.align();
   return frame;
 }
-function readState(r) {
+// The paint of some triangles.
+function readPaint(r, count) {
+  const material = r.array(Uint16Array, count);
+  r.align();
+  return { material, at: r.array(Float32Array, 6 * count), tint: r.array(Uint32Array, 3 * count) };
+}
+function readState(r, flags) {
   const state = { revision: r.u32(), vertices: r.u32(), faces: r.u32(), nodes: r.u32() };
   state.about = r.json(r.u32());
   state.corners = r.array(Uint32Array, 3 * state.faces);
   state.patch = r.array(Uint8Array, state.faces), r.align();
+  if (flags & 4) state.rest = r.array(Float32Array, 3 * state.vertices);
+  if (flags & 8) state.paint = readPaint(r, state.faces);
   return state;
 }
-function readDelta(r) {
+function readDelta(r, flags) {
   const delta = { from: r.u32(), to: r.u32(), vertices: r.u32() }, removed = r.u32(), added = r.u32();
   delta.removed = r.array(Uint32Array, removed);
   delta.added = r.array(Uint32Array, 4 * added);
   delta.patch = r.array(Uint8Array, added), r.align();
+  if (flags & 4) delta.placed = r.array(Uint32Array, r.u32()), delta.rest = r.array(Float32Array, 3 * delta.placed.length);
+  if (flags & 8) delta.paint = readPaint(r, added);
   return delta;
 }
 
@@ -55,8 +66,9 @@ function receive(buffer) {
   wire.bytes += buffer.byteLength, wire.messages++;
   if (kind === 5) return notice(r.json(buffer.byteLength - 16));  // needs no acknowledgement
   if (kind === 4) graphArrived(r.array(Uint32Array, 2 * r.u32()));
-  if (kind === 1) stateArrived(readState(r));
-  if (kind === 2) deltaArrived(readDelta(r));
+  if (kind === 1) stateArrived(readState(r, flags));
+  if (kind === 2) deltaArrived(readDelta(r, flags));
+  if (kind === 6) surface.paint.take({ about: r.json(r.u32()), bytes: buffer.slice(r.at) });
   if (kind <= 3) frameArrived(readFrame(r, flags), time);
   acknowledge(sequence);
 }

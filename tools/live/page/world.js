@@ -1,6 +1,4 @@
 // The place where the body is: background, light, ground with shadows, obstacles, pins, and edges of blades.
-const groundPlane = { value: new THREE.Vector4(0, 0, 0, 1e3) };  // in the eye's coordinates: a point's height above the ground
-
 // Colours of the background, from above to below, and of the floor, from its middle outwards.
 const tonesOf = {
   light: { top: "#dfe7f0", middle: "#eef2f6", bottom: "#cfd8e2", inner: 0xfbfcfd, outer: 0xdbe3ec },
@@ -134,15 +132,17 @@ class Inside {
     this.edges = new LineLayer(0x2b4c9b, 0.45, 2.1);
   }
   update() {
-    const shown = live.node && (state.nodes || state.stress);
+    const shown = live.node && state.nodes;
     $("legend").hidden = !(live.stress && state.stress);
     if (shown) {
       const n = live.node.length / 3, color = new Float32Array(3 * n), most = this.range();
       for (let i = 0; i < n; i++) color.set(live.stress && state.stress ? scaleColor(live.stress[i] / most) : [0.16, 0.45, 0.75], 3 * i);
       this.spots.set(live.node, color, new Float32Array(n).fill(0.3 * (live.told.spacing ?? 0.1 * about.unit) / about.unit * state.size));
-      $("legend-hi").textContent = "≥ " + pascals(most);
-      $("legend-bar").style.background = `linear-gradient(to right, ${[0, 1, 2, 3, 4].map((i) => `rgb(${scaleColor(i / 4).map((c) => Math.round(255 * c))})`)})`;
     } else this.spots.hide();
+    if (live.stress && state.stress) {
+      $("legend-hi").textContent = "≥ " + pascals(this.range());
+      $("legend-bar").style.background = `linear-gradient(to right, ${[0, 1, 2, 3, 4].map((i) => `rgb(${scaleColor(i / 4).map((c) => Math.round(255 * c))})`)})`;
+    }
     this.edges.set(state.edges && live.node && live.pairs ? live.node : null, live.pairs ?? []);
   }
   // The scale follows the greatest stress slowly: colours do not flicker.

@@ -1,0 +1,22 @@
+// Bodies to begin with: the program makes them, and the page gives each its look, and a tool to begin with.
+const gallery = [
+  ["apple", "apple", "knife"], ["pumpkin", "pumpkin", "knife"], ["cake", "cake", "knife"], ["jelly", "gelatine", "grab"], ["polyp", "tissue", "lasso"],
+  ["tissue", "tissue", "scalpel"], ["board", "wood", "break"], ["log", "log", "break"], ["stone", "stone", "break"], ["letter", "clay", "knife"],
+].map(([name, look, tool]) => ({ name, look, tool }));
+
+function listenToGallery() {
+  for (const { name, look, tool } of gallery) {
+    const button = document.createElement("button"), spot = document.createElement("i"), colors = looks[look];
+    const css = (color) => "#" + color.toString(16).padStart(6, "0");
+    spot.style.background = `linear-gradient(115deg, ${css(colors.skin)} 52%, ${css(colors.lip)} 52% 55%, ${css(colors.wall)} 55%)`;
+    button.type = "button", button.dataset.body = name;
+    button.append(spot, name[0].toUpperCase() + name.slice(1));
+    button.addEventListener("click", () => {
+      $("bodies").close();
+      endStroke();
+      set("look", look), set("tool", tool);
+      send({ show: name });
+    });
+    $("body-list").append(button);
+  }
+}

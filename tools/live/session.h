@@ -48,8 +48,8 @@ class Session {
   void obey(const Pin& pin);
   void obey(const Set& set);
   /// Begins anew with a skin that is stretched by this factor, 1: not at all, in a layer as deep as
-  /// the nodes are apart. The body keeps its shape until it is cut. Throws BadMessage where it finds
-  /// no rest.
+  /// the nodes are apart. The body keeps its shape until it is cut. Throws BadMessage where it
+  /// finds no rest.
   void tighten(double stretch);
   /// Likewise. It counts as a stroke that has cut.
   void obey(const Blow& blow);

@@ -97,7 +97,7 @@ class BindingUpdate::Impl {
     node_before_.try_emplace(v, b_.master_node[v.index()]);
     b_.master_node[v.index()] = node;
   }
-  // Of the slaves of a vertex that has a depth.
+  // The depth of slaves of a vertex that has one.
   std::uint32_t depth_below(SurfaceVertexId parent) const { return depth_[parent.index()] + step_from(k_, parent); }
   void orphan(SurfaceVertexId root);
   void dismiss_unseen_master(SurfaceVertexId v);

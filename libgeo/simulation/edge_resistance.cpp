@@ -263,7 +263,6 @@ void EdgeResistance::begin_substep(const std::vector<Vec3>& /*u*/, double /*from
   for (Spring& s : springs_) s.now = s.begin + to * (s.end - s.begin);
 }
 
-// From the place of the surface at displacement d to the edge.
 Vec3 EdgeResistance::Spring::stretch(const Vec3& d) const {
   const Vec3 ahead = across * (now - rest - d);
   return ahead.dot(inward) < 0 ? Vec3(Vec3::Zero()) : ahead;

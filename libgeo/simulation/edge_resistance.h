@@ -79,6 +79,7 @@ class EdgeResistance : public Potential {
     Mat3 across = Mat3::Zero();     // takes off the part along the edge; along the skin
     Vec3 inward = Vec3::Zero();     // of the skin: only this way; zero: both
     double limit = 0, lead = 0;     // largest force, N; stretch where it is reached, model units
+    /// From the place of the surface at displacement d to the edge, as far as it acts.
     Vec3 stretch(const Vec3& d) const;
   };
   struct FrontInStep;

@@ -16,7 +16,6 @@ inline std::vector<std::string> sample_messages() {
       R"({"grab":{"id":5,"phase":"end","input":20,"to":[1,2,3]}})",
       R"({"pin":{"face":12,"bary":[1,0,0],"on":true,"radius":0.3}})",
       R"({"set":{"young":1e5,"gravity":[0,0,-9.81],"friction":0.5,"damping":1}})",
-      R"({"set":{"tension":1.3,"resistance":2000,"dullness":0.5}})",
       R"({"undo":true})",
       R"({"reset":true})",
       R"({"pause":false})",
@@ -31,6 +30,7 @@ inline std::vector<std::string> sample_messages() {
       R"({"show":"apple"})",
       R"({"want":{"rest":true}})",
       R"({"break":{"face":12,"bary":[0.5,0.25,0.25],"cells":9}})",
+      R"({"set":{"tension":1.3,"resistance":2000,"dullness":0.5}})",
   };
 }
 

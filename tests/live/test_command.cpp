@@ -65,6 +65,8 @@ TEST_CASE("each kind of message is read") {
   CHECK(std::holds_alternative<Redo>(read_command(samples[16])));
   CHECK(std::get<Show>(read_command(samples[17])).name == "apple");
   CHECK(std::get<Want>(read_command(samples[18])).rest == true);
+  const auto tissue = std::get<Set>(read_command(samples[20]));
+  CHECK((tissue.tension == 1.3 && tissue.resistance == 2000.0 && tissue.dullness == 0.5));
 }
 
 TEST_CASE("a path that is too long loses every second pose") {

@@ -460,7 +460,7 @@ TEST_CASE("strokes that begin in one frame are one step of undo, whichever of th
   }
 }
 
-TEST_CASE("a tight skin is a new beginning; edges are as dull as was said when they began to cut") {
+TEST_CASE("a tight skin is a new beginning, and edges are as dull as was said when they began to cut") {
   Session session(setup(), {});
   const std::string loose = surface_bytes(session.run());
   cut(session, 1, -0.2, 0.4);

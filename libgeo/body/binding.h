@@ -27,8 +27,9 @@ SurfaceVertexId closest_vertex(const Complex& complex, const Vec3& p, double rea
 /// Whether a surface vertex lies on the border of a crack's sheet, where its two sides join.
 bool is_on_border(const Complex& complex, SurfaceVertexId v);
 
-/// By how much a slave is deeper than its parent v: 1. From a border of a sheet, whose vertices belong to
-/// both sides, it is more than any way around: so a side takes nodes of its own, not of the other.
+/// By how much a slave is deeper than its parent v: 1. From a border of a sheet, whose vertices
+/// belong to both sides, it is more than any way around: so a side takes nodes of its own, not of
+/// the other.
 std::uint32_t step_from(const Complex& complex, SurfaceVertexId v);
 
 /// Among nodes i with closest[i] = v, the one nearest to v (ties: the lowest id). Invalid if there

@@ -20,7 +20,7 @@ struct IncrementalCache {
   std::int32_t piece_count = 0;                 ///< labels in use are below this
   std::set<std::int32_t> pieces_without_node;   ///< labels, as far as known
   bool inner_shells = false;                    ///< several shells may bound one piece: cavities, internal cracks
-  std::vector<std::uint32_t> depth;             ///< by surface vertex: depth below its master; ~0u (no depth) for orphans
+  std::vector<std::uint32_t> depth;             ///< by surface vertex: depth under its master; ~0u: orphans
   std::vector<SurfaceVertexId> unseen_masters;  ///< masters of unseen shells, ascending
 };
 

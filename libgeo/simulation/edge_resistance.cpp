@@ -83,9 +83,9 @@ std::optional<SurfacePoint> skin_below(const Body& body, const Vec3& place) {
   return result;
 }
 
-// The nodes that carry a place of the surface, each once, with weights of sum 1 by their distances
-// (1 − q²)³, q: in 1.5 support radii. Those of Eq. 1 have gradients, and a force on a line that acts
-// through them folds soft material between the nodes. Empty where no node is that near.
+// The nodes that carry a place of the surface, each once, with weights of sum 1: (1 − q²)³ with the
+// distance q in 1.5 support radii. Those of Eq. 1 have gradients, through which a force on a line
+// folds soft material between the nodes. Empty where no node is that near.
 std::vector<NodeWeight> carriers(const SurfaceWeights& weights, const SurfacePoint& on, const NodeSet& nodes) {
   Vec3 place = Vec3::Zero();
   std::vector<std::uint32_t> near;

@@ -16,10 +16,10 @@
 
 namespace geo {
 
-/// How far the edge of a blade with a resistance R is ahead of its front where it cuts, model units:
-/// 4 R / E, where a spring that reaches R there is a quarter as stiff as the material: stiffer ones
-/// crumple a soft surface. At least as near as a cut follows an edge, at most half a node spacing. `young`: E,
-/// Pa, and `spacing` of the nodes there.
+/// How far the edge of a blade with a resistance R is ahead of its front where it cuts: 4 R / E, in
+/// model units. A spring that reaches R there is a quarter as stiff as the material, and stiffer
+/// ones crumple a soft surface. At least as near as a cut follows an edge, at most half a node
+/// spacing. `young`: E, Pa, and `spacing` of the nodes there.
 double edge_lead(double resistance, double young, double spacing);
 
 /// A front, and where its edge is now.
@@ -29,9 +29,9 @@ struct FrontBehindEdge {
 };
 
 /// Keeps the next positions `to` of a front behind the edge of a blade with a resistance: by
-/// edge_lead(), and where they are, until it is a twentieth of a node spacing farther. A front that
-/// is in air follows its edge to the skin, and stays there until one of its points is to lie a tenth
-/// of a spacing deep in the material: shallower cuts are not distinguished from the skin.
+/// edge_lead(), and where they are, until it is a twentieth of a node spacing farther. A front in
+/// air follows its edge to the skin. It stays there until one of its points is to lie a tenth of a
+/// spacing deep in the material: shallower cuts are not distinguished from the skin.
 void stay_behind(const Body& body, const Solid& solid, double resistance, const FrontBehindEdge& front,
                  std::vector<Vec3>& to);
 
@@ -40,7 +40,8 @@ void stay_behind(const Body& body, const Solid& solid, double resistance, const 
 /// the length of front that belongs to the vertex. It reaches that at edge_lead(), where BladeCuts
 /// lets the front go on: so an area A takes the work R A. An edge that goes back in its cut exerts
 /// nothing. Where the front is in air, springs act on the skin below it, along its normal, once the
-/// edge is behind it: so the skin is dented before it parts. Cutting with an energy per area: Atkins and Mai 1985.
+/// edge is behind it: so the skin is dented before it parts. Cutting with an energy per area:
+/// Atkins and Mai 1985.
 class EdgeResistance : public Potential {
  public:
   /// Refers to the scene.

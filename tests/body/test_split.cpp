@@ -95,7 +95,7 @@ TEST_CASE("Each wall of a cut that ends in the material is carried by nodes of i
     std::uniform_real_distribution<double> unit(-1, 1);
     const double x = 0.5 + 0.1 * unit(random), depth = 0.4 + 0.1 * unit(random);
     Body body = make_body(make_block({1, 1, 1}, 0.2), 0.12);
-    // In steps of random lengths, with uneven fronts: their triangles go to the border from everywhere.
+    // In steps of random lengths, with uneven fronts: triangles reach the border from everywhere.
     const int steps = 4;
     std::vector<Vec3> at;
     for (int k = 0; k <= 12; ++k) at.push_back({x, -0.1 + 0.1 * k, 1.05});

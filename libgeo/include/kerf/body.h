@@ -126,8 +126,8 @@ BodyDelta update_body(Body& body, const Complex& surface, SplitStats* stats = nu
 /// for bit. The cost follows what changes. Throws InputError for a radius that is not positive.
 BodyDelta resize_nodes(Body& body, std::span<const std::pair<NodeId, double>> radii);
 
-/// Writes the nodes that carry a surface vertex v, with Euclidean distances to v (§ 6.5). Candidates:
-/// the node m of v's master, and m's neighbours; those of both sides on the border of a sheet. j
+/// Writes the nodes that carry a surface vertex v, with their Euclidean distances to v (§ 6.5): the
+/// node m of v's master, and m's neighbours; on the border of a sheet, those of both sides. j
 /// carries v if |x_j − v| < r_j. If none does, m carries v, with distance 0. Empty for an orphan.
 void carrier_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out);
 

@@ -11,6 +11,7 @@ drop: a model that is dropped on the page is opened; one that cannot be is refus
 keys: a cut by the keyboard alone, dark colours, controls that nothing covers.
 """
 import glob, os, signal, subprocess, time
+import pictures
 from client import Program
 from hand import along
 from page_session import Session, check, hand, kerf, models, run, scenes, tools
@@ -97,6 +98,7 @@ def late():
     session = model("polyp", "--nodes", "3000")  # so frames follow each other without a break
     middle = [(a + b) / 2 for a, b in zip(*hand.run("live.told.box"))]
     x, y = hand.place(middle)
+    pictures.keep(hand, "whole")
     stand, go_on = [lambda s=s: session.program.process.send_signal(s) for s in (signal.SIGSTOP, signal.SIGCONT)]
     hand.drag([(x - 200, y), (x - 170, y), (x - 165, y)], release=False)
     stand()
@@ -110,6 +112,8 @@ def late():
     go_on()
     hand.wait("live.stats.waiting.length === 0 && live.stats.stroke === 1", seconds=200)
     check(f"late: the stroke did not part the body: {hand.stats()['pieces']} pieces", hand.stats()["pieces"] == 2)
+    parted = pictures.changed(hand, "whole")
+    check(f"late: the parts change {parted:.4f} of the picture", parted > 0.001)
     hand.key(" ")
     hand.wait("live.stats.paused")
     session.done()
@@ -120,6 +124,7 @@ def steps():
     session.begin()
     for _ in range(14):
         hand.key("[")
+    pictures.keep(hand, "whole")
     # Short strokes in rows on the face that is seen.
     for k in range(24):
         u, v = 0.14 + 0.24 * (k % 4), 0.12 + 0.15 * (k // 4)
@@ -128,10 +133,15 @@ def steps():
         hand.finish()
     made = hand.stats()["undo"]
     check(f"steps: {made} cuts can be undone", made >= 20)
+    hand.wait("hand.ghosts.length === 0")
+    seen = pictures.changed(hand, "whole")
+    check(f"steps: the cuts change {seen:.4f} of the picture", seen > 0.002)
     for k in range(made):
         hand.key("u")
         hand.wait(f"live.stats.undo === {made - 1 - k}")
     hand.wait("live.frame === null")
+    again = pictures.changed(hand, "whole")
+    check(f"steps: {again:.4f} of the picture is not as before the cuts, which were {seen:.4f}", again < 0.2 * seen)
     check("steps: the body is not whole", hand.run("!surface.walls.visible && surface.walls.empty") and hand.stats()["redo"] == made)
     hand.key("u")
     hand.wait("$('notice').textContent === 'there is no cut to undo'")

@@ -42,7 +42,7 @@ class Folder {
  public:
   Folder() {
     std::random_device random;
-    path_ = fs::temp_directory_path() / ("kerf-live-" + std::to_string(random()) + std::to_string(random()));
+    path_ = fs::temp_directory_path() / ("kerf-page-" + std::to_string(random()) + std::to_string(random()));
     fs::create_directories(path_);
   }
   Folder(const Folder&) = delete;

@@ -5,7 +5,7 @@ there. A GLB is dropped, cut and broken, on a phone's screen by a finger.
 An OBJ has the colours of the MTL and image that are dropped with it. The console has no error, and after the page is loaded nothing asks any host for anything.
 --rates: only how many frames of simulation a second the polyp and the bear of 800 nodes have, before and after a cut.
 """
-import base64, functools, http.server, json, os, shutil, struct, subprocess, sys, tempfile, threading, time, zlib
+import base64, functools, glob, http.server, json, os, shutil, struct, subprocess, sys, tempfile, threading, time, zlib
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "live"))
@@ -58,6 +58,7 @@ def middle(hand):
 
 def cut(hand, strokes, reach=250, slope=10, shift=0):
     """One drag across the body; the number of pieces after it."""
+    hand.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")  # the view has moved
     x, y = middle(hand)
     hand.drag(along((x - reach, y + shift), (x + reach, y + shift + slope), steps=12))
     hand.wait(f"live.stats.undo === {strokes} && live.stats.waiting.length === 0", seconds=300)
@@ -323,9 +324,12 @@ def worker_seconds(hand):
             above = parents[above]
         if above != hand.process.pid:
             continue
-        for thread in os.listdir(f"/proc/{process}/task"):
-            with open(f"/proc/{process}/task/{thread}/stat") as file:
-                name, fields = file.read().split("(", 1)[1].rsplit(")", 1)
+        for thread in glob.glob(f"/proc/{process}/task/*"):
+            try:
+                with open(f"{thread}/stat") as file:
+                    name, fields = file.read().split("(", 1)[1].rsplit(")", 1)
+            except OSError:
+                continue  # it has ended
             if name.startswith("DedicatedWorker"):
                 total += sum(map(int, fields.split()[11:13])) / os.sysconf("SC_CLK_TCK")
     return total

@@ -12,6 +12,7 @@
 #include "graph/graph_storage.h"
 #include "kerf/parallel.h"
 #include "kerf/pieces.h"
+#include "surface/radial_edge.h"
 
 namespace geo {
 namespace {
@@ -49,8 +50,7 @@ SurfaceVertexId visible_fan(const Complex& k, const Vec3& p, VertexId v) {
   for (const FaceId f : k.faces_at(v))
     for (int which = 0; which < 2; ++which) {
       if (!k.has({f, which})) continue;
-      const auto& c = k.face(f).v;
-      const auto id = k.surface_vertex({f, which}, static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin()));
+      const auto id = k.surface_vertex({f, which}, corner_at(k.face(f), v));
       several |= only.valid() && only != id;
       only = id;
     }
@@ -62,13 +62,19 @@ SurfaceVertexId visible_fan(const Complex& k, const Vec3& p, VertexId v) {
     if (above == 0 || !k.has(s)) continue;
     // A point of the face near its corner at v: at most a twentieth of the way to the face's middle
     // and of the distance of p, so that few faces can stand between.
-    const auto& c = k.face(f).v;
-    const int corner = static_cast<int>(std::find(c.begin(), c.end(), v) - c.begin());
+    const int corner = corner_at(k.face(f), v);
     const Vec3 inwards = (t[0] + t[1] + t[2]) / 3 - k.point(v);
     const Vec3 q = k.point(v) + std::min(0.05, 0.05 * (p - k.point(v)).norm() / inwards.norm()) * inwards;
     if (!is_blocked(k, p, q, f)) return k.surface_vertex(s, corner);
   }
   return {};
+}
+
+// The corner of a crack's face where both of its sides have this surface vertex; −1: there is none.
+int joined_corner(const Complex& k, FaceId f, SurfaceVertexId v) {
+  if (k.face(f).crack == 0) return -1;
+  const int c = corner_at(k.face(f), k.site(v));
+  return k.surface_vertex({f, 0}, c) == v && k.surface_vertex({f, 1}, c) == v ? c : -1;
 }
 
 }  // namespace
@@ -102,14 +108,13 @@ SurfaceVertexId closest_vertex(const Complex& k, const Vec3& p, double reach) {
 double longest_reach(const Body& body) { return GraphStorage::of(body.graph).plain_unit() * 0x1p26; }
 
 bool is_on_border(const Complex& k, SurfaceVertexId v) {
-  const VertexId site = k.site(v);
-  for (const FaceId f : k.faces_at(site)) {
-    if (k.face(f).crack == 0) continue;
-    const auto& corners = k.face(f).v;
-    const int c = static_cast<int>(std::find(corners.begin(), corners.end(), site) - corners.begin());
-    if (k.surface_vertex({f, 0}, c) == v && k.surface_vertex({f, 1}, c) == v) return true;
-  }
-  return false;
+  const auto& faces = k.faces_at(k.site(v));
+  return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return joined_corner(k, f, v) >= 0; });
+}
+
+NodeId carrying_node(const Body& body, SurfaceVertexId v) {
+  const SurfaceVertexId master = body.binding.master[v.index()];
+  return master.valid() ? body.binding.master_node[master.index()] : NodeId();
 }
 
 std::uint32_t step_from(const Complex& k, SurfaceVertexId v) {
@@ -216,26 +221,20 @@ Binding build_binding(const Body& body) {
 
 std::array<NodeId, 2> master_nodes(const Body& body, SurfaceVertexId v) {
   const Complex& k = body.surface;
-  const auto node_of = [&](SurfaceVertexId w) {
-    const SurfaceVertexId master = body.binding.master[w.index()];
-    return master.valid() ? body.binding.master_node[master.index()] : NodeId();
-  };
-  const NodeId own = node_of(v);
+  const NodeId own = carrying_node(body, v);
   if (!own.valid()) return {};
   const Vec3& x = k.point(k.site(v));
   // The nearest node of the vertices beside v on each side of the crack, where these are two.
   std::array<NodeId, 2> of_side;
   std::array<double, 2> least{};
   for (const FaceId f : k.faces_at(k.site(v))) {
-    if (k.face(f).crack == 0) continue;
-    const auto& corners = k.face(f).v;
-    const int c = static_cast<int>(std::find(corners.begin(), corners.end(), k.site(v)) - corners.begin());
-    if (k.surface_vertex({f, 0}, c) != v || k.surface_vertex({f, 1}, c) != v) continue;
+    const int c = joined_corner(k, f, v);
+    if (c < 0) continue;
     for (const int other : {(c + 1) % 3, (c + 2) % 3}) {
       const std::array<SurfaceVertexId, 2> w{k.surface_vertex({f, 0}, other), k.surface_vertex({f, 1}, other)};
       if (w[0] == w[1]) continue;
       for (std::size_t s = 0; s < 2; ++s) {
-        const NodeId node = node_of(w[s]);
+        const NodeId node = carrying_node(body, w[s]);
         if (!node.valid()) continue;
         const double d = (body.nodes.position[node.index()] - x).norm();
         if (of_side[s].valid() && (d > least[s] || (d == least[s] && of_side[s] < node))) continue;
@@ -249,9 +248,13 @@ std::array<NodeId, 2> master_nodes(const Body& body, SurfaceVertexId v) {
 }
 
 void carrier_nodes(const Body& body, SurfaceVertexId v, std::vector<std::pair<NodeId, double>>& out) {
+  carriers_beside(body, v, master_nodes(body, v), out);
+}
+
+void carriers_beside(const Body& body, SurfaceVertexId v, const std::array<NodeId, 2>& masters,
+                     std::vector<std::pair<NodeId, double>>& out) {
   out.clear();
   const Vec3& x = body.surface.point(body.surface.site(v));
-  const std::array<NodeId, 2> masters = master_nodes(body, v);
   const auto add = [&](NodeId j) {
     const double d = (body.nodes.position[j.index()] - x).norm();
     if (d < body.nodes.radius[j.index()]) out.push_back({j, d});

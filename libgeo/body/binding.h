@@ -40,10 +40,17 @@ NodeId master_node_of(const Body& body, const Binding& binding, SurfaceVertexId 
 /// there is none. `accept` limits the search to the piece of the shell.
 NodeId carrier_of_unseen_shell(const Body& body, SurfaceVertexId v, const std::function<bool(NodeId)>& accept);
 
+/// The node of a surface vertex's master; invalid for an orphan.
+NodeId carrying_node(const Body& body, SurfaceVertexId v);
+
 /// The nodes whose neighbours carry a surface vertex: that of its master. A vertex on the border of
 /// a crack's sheet belongs to both sides, and has the nearest node of the masters of each, where
 /// these differ. Invalid where there is none.
 std::array<NodeId, 2> master_nodes(const Body& body, SurfaceVertexId v);
+
+/// carrier_nodes() of a vertex whose master_nodes() are known.
+void carriers_beside(const Body& body, SurfaceVertexId v, const std::array<NodeId, 2>& masters,
+                     std::vector<std::pair<NodeId, double>>& out);
 
 /// Nodes, ascending, and the closest surface vertex of each, as closest_vertex() finds it.
 using ClosestVertices = std::vector<std::pair<NodeId, SurfaceVertexId>>;

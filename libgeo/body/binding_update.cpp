@@ -303,7 +303,8 @@ void BindingUpdate::Impl::grow() {
     depth_[v.index()] = depth;
     b_.parent[v.index()] = parent;
     changed.push({depth, v});
-    for (const auto w : around(v)) offer(w, depth_below(v), v);
+    const std::uint32_t below = depth_below(v);
+    for (const auto w : around(v)) offer(w, below, v);
   }
   while (!changed.empty()) {
     const auto [depth, v] = changed.top();
@@ -311,8 +312,9 @@ void BindingUpdate::Impl::grow() {
     const auto master = depth == 0 ? v : b_.master[b_.parent[v.index()].index()];
     if (depth != depth_[v.index()] || master == b_.master[v.index()]) continue;
     set_master(v, master);
+    const std::uint32_t below = depth_below(v);
     for (const auto w : around(v))
-      if (b_.parent[w.index()] == v && w != v) changed.push({depth_below(v), w});
+      if (b_.parent[w.index()] == v && w != v) changed.push({below, w});
   }
 }
 

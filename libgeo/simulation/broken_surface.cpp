@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "body/binding.h"
 #include "kerf/error.h"
 #include "kerf/mesh.h"
 
@@ -199,10 +200,9 @@ class Places {
 
 // A node of the piece that is hit.
 NodeId node_at(const Simulation& run, const SurfaceHit& hit) {
-  const Binding& binding = run.body().binding;
-  const SurfaceVertexId master = binding.master[hit.nearest.index()];
-  if (!master.valid()) throw GeometryError("no node carries this point");
-  return binding.master_node[master.index()];
+  const NodeId node = carrying_node(run.body(), hit.nearest);
+  if (!node.valid()) throw GeometryError("no node carries this point");
+  return node;
 }
 
 }  // namespace

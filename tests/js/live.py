@@ -5,12 +5,12 @@ there. A GLB is dropped, cut and broken, on a phone's screen by a finger.
 An OBJ has the colours of the MTL and image that are dropped with it. The console has no error, and after the page is loaded nothing asks any host for anything.
 --rates: only how many frames of simulation a second the polyp and the bear of 800 nodes have, before and after a cut.
 """
-import base64, functools, glob, http.server, json, os, shutil, struct, subprocess, sys, tempfile, threading, time, zlib
+import base64, functools, glob, http.server, json, os, shutil, struct, subprocess, sys, tempfile, threading, time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "live"))
 from hand import Hand, along
-from pictures import count
+from pictures import count, png
 
 rates = os.path.abspath(sys.argv[2]) if sys.argv[1] == "--rates" else None
 folder, failures, served = os.path.abspath(sys.argv[-1]), [], []
@@ -129,9 +129,7 @@ def box_glb(n=8):
 
 def drop(hand, path, *beside):
     """Drops a file on the page, with others beside it; it is shown when this returns."""
-    data = {"items": [], "files": [os.path.abspath(file) for file in (path, *beside)], "dragOperationsMask": 1}
-    for kind in ("dragEnter", "dragOver", "drop"):
-        hand.send("Input.dispatchDragEvent", type=kind, x=240, y=210, data=data)
+    hand.drop_files(path, *beside)
     name = os.path.splitext(os.path.basename(path))[0]
     hand.wait(f"$('title').textContent === '{name}' && live.stats.undo === 0", seconds=120)
 
@@ -236,10 +234,8 @@ def on_phone(hand):
 
 def check_painted(hand):
     """An OBJ that comes with its MTL and image has their colours; one that comes alone says what is missing."""
-    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    row = b"\0" + bytes([230, 40, 30]) * 8 + bytes([30, 60, 220]) * 8
     with open("two.png", "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 16, 16, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(row * 16)) + chunk(b"IEND", b""))
+        file.write(png([[(230, 40, 30)] * 8 + [(30, 60, 220)] * 8] * 16))
     with open("two.mtl", "w") as file:
         file.write("newmtl sides\nKd 1 1 1\nmap_Kd two.png\n")
     n, place, faces = 8, {}, []

@@ -11,10 +11,10 @@ follow: the view goes with a piece that is drawn away.
 record: an animated GLB has the frames that were shown, in three.js, too, and Khronos' validator finds nothing; a video.
 twice: a cut at the place of one before leaves no bridge.
 """
-import base64, filecmp, glob, json, math, os, struct, subprocess, zlib
+import base64, filecmp, glob, json, math, os, struct, subprocess
 from hand import along
 from page_session import Session, check, hand, kerf, models, run, tools
-from pictures import changed, count, keep
+from pictures import changed, count, keep, png
 
 GROUPS = "surface.position.array.subarray(0, 3 * surface.corners.groups)"
 
@@ -160,19 +160,6 @@ def gape():
     check("gape: the replay's last frame is not the one shown", filecmp.cmp(sorted(glob.glob("again/run/frames/*.ply"))[-1], "shown.ply", shallow=False))
 
 
-def png(pixels):
-    """A PNG of rows of (r, g, b)."""
-    rows = b"".join(b"\0" + bytes(c for pixel in row for c in pixel) for row in pixels)
-    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(pixels[0]), len(pixels), 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-
-
-def drop_files(*paths):
-    data = {"items": [], "files": [os.path.abspath(path) for path in paths], "dragOperationsMask": 1}
-    for kind in ("dragEnter", "dragOver", "drop"):
-        hand.send("Input.dispatchDragEvent", type=kind, x=300, y=250, data=data)
-
-
 def images():
     # A box whose sides have the whole image each: left half red, right half blue.
     with open("two.png", "wb") as file:
@@ -190,7 +177,7 @@ def images():
     red, blue = "r > 1.8 * g && r > 1.8 * b && r > 70", "b > 1.6 * r && b > 1.6 * g && b > 60"
     with open("box.obj") as file:
         names = [line.split()[1] for line in file if line.startswith("mtllib")]
-    drop_files("box.obj", *names, *[name for name in os.listdir(".") if name.endswith(".png")])
+    hand.drop_files("box.obj", *names, *[name for name in os.listdir(".") if name.endswith(".png")])
     hand.wait("live.told.name === 'box' && live.frame === null && surface.painted !== null", seconds=120)
     hand.wait("surface.paint.textures.some((texture) => texture)")
     whole = [count(hand, red), count(hand, blue)]

@@ -22,14 +22,6 @@ LIPS = """(() => {
   const at = [], p = new THREE.Vector3(), box = $("canvas").getBoundingClientRect(), index = surface.lips.geometry.index.array;
   for (const v of index) p.fromArray(live.position, 3 * v).project(camera), at.push([box.x + (p.x + 1) / 2 * box.width, box.y + (1 - p.y) / 2 * box.height]);
   return at; })()"""
-# Pixels of the picture: how many are of a kind, which is told by r, g and b.
-COUNT = """(() => {
-  draw();
-  const gl = renderer.getContext(), w = gl.drawingBufferWidth, h = gl.drawingBufferHeight, data = new Uint8Array(4 * w * h);
-  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, data);
-  let count = 0;
-  for (let i = 0; i < data.length; i += 4) { const [r, g, b] = data.subarray(i, i + 3); if (%s) count++; }
-  return count; })()"""
 HIGHEST = "(() => { surface.arrive(); let z = -9; for (let v = 0; v < live.vertices; v++) if (surface.corners.first[v] >= 0) z = Math.max(z, live.position[3 * v + 2]); return z; })()"
 
 
@@ -41,7 +33,7 @@ def first():
     session = model("polyp")
     hand.tool("scalpel")
     hand.tool("knife")
-    before, high = hand.run(COUNT % "r > 160 && b > 95 && r > 1.15 * b"), hand.run(HIGHEST)
+    before, high = pictures.count(hand, "r > 160 && b > 95 && r > 1.15 * b"), hand.run(HIGHEST)
     middle = [(a + b) / 2 for a, b in zip(*hand.run("live.told.box"))]
     x, y = hand.place(middle)
     # The way to the body takes a second of the run: it would sag by then.
@@ -58,7 +50,7 @@ def first():
     at = hand.run("live.time")
     hand.wait(f"live.time > {at} + 0.7", seconds=200)
     hand.run("view.elevation = 0.9; draw()")
-    after = hand.run(COUNT % "r > 160 && b > 95 && r > 1.15 * b")
+    after = pictures.count(hand, "r > 160 && b > 95 && r > 1.15 * b")
     check(f"first: walls are not drawn: {before} pixels became {after}", hand.run("surface.walls.visible") and after > before + 100)
     check("first: gravity is not shown as it is", hand.run("$('gravity-value').textContent") == "× 1.00")
     hand.key(" ")
@@ -269,7 +261,7 @@ def look():
     hand.wait("live.stats.paused")
     # The light stands on the walls, and is half as strong again.
     hand.run("view.elevation = 1.5; world.sun.intensity *= 1.5; lamp.intensity *= 1.5; sky.intensity *= 1.5; draw()")
-    white, pale = hand.run(COUNT % "r > 253 && b < 0.97 * r"), hand.run(COUNT % "r > 170 && b > 0.5 * r && r > 1.08 * b")
+    white, pale = pictures.count(hand, "r > 253 && b < 0.97 * r"), pictures.count(hand, "r > 170 && b > 0.5 * r && r > 1.08 * b")
     check(f"look: {white} of {pale} pixels of walls are clipped", pale > 500 and white < 0.01 * pale)
     off = hand.run(NORMALS)
     check(f"look: normals are {off} degrees off on average", off < 9)
@@ -304,12 +296,6 @@ def gone():
     hand.errors.clear()
 
 
-def drop_files(*paths):
-    data = {"items": [], "files": [os.path.abspath(path) for path in paths], "dragOperationsMask": 1}
-    for kind in ("dragEnter", "dragOver", "drop"):
-        hand.send("Input.dispatchDragEvent", type=kind, x=300, y=250, data=data)
-
-
 def drop():
     with open("box.mtl", "w") as file:
         file.write("newmtl red\nKd 1 0 0\n")
@@ -326,15 +312,15 @@ def drop():
     hand.drag(along((x - 200, y), (x + 220, y), steps=12))
     hand.wait("live.stats.undo === 1", seconds=200)
 
-    drop_files("scene.toml")
+    hand.drop_files("scene.toml")
     hand.wait("$('notice').textContent.startsWith('scene.toml cannot be opened here')")
-    drop_files("open.off")
+    hand.drop_files("open.off")
     hand.wait("$('notice').textContent.startsWith('open.off: ')")
     check("drop: what could not be opened is shown", hand.run("$('title').textContent") == "polyp" and hand.stats()["undo"] == 1)
-    drop_files("box.obj", "box.mtl")
+    hand.drop_files("box.obj", "box.mtl")
     hand.wait("$('title').textContent === 'box' && live.time === 0 && live.stats.undo === 0", seconds=120)
     hand.wait("surface.painted !== null")
-    red = hand.run(COUNT % "r > 2 * g && r > 2 * b && r > 60")
+    red = pictures.count(hand, "r > 2 * g && r > 2 * b && r > 60")
     check(f"drop: {red} pixels are red", red > 2000)
     check("drop: the new body is not the box", hand.run("surface.corners.slots") == 12 and hand.run("$('wait').hidden"))
     sides = [hand.place([a, 0.5, 0.5])[0] for a in (0, 1)]
@@ -398,10 +384,10 @@ def keys():
         check(f"keys: at {width} pixels the tools are over the picture: {below}", below[0] <= below[1] + 0.5 and below[2] <= 0)
     check("keys: the page cannot be enlarged", "maximum-scale" not in hand.run("document.querySelector('meta[name=viewport]').content"))
     # The look of the night.
-    light = hand.run(COUNT % "r + g + b > 600")
+    light = pictures.count(hand, "r + g + b > 600")
     hand.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
     hand.wait("darkness.matches")
-    dark = hand.run(COUNT % "r + g + b > 600")
+    dark = pictures.count(hand, "r + g + b > 600")
     text = hand.run("getComputedStyle($('panel')).backgroundColor + getComputedStyle($('tools')).backgroundColor")
     check(f"keys: {light} bright pixels became {dark}, panels are {text}", light > 20000 and dark < 0.1 * light and "248" not in text)
     hand.send("Emulation.setEmulatedMedia", features=[])

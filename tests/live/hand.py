@@ -23,6 +23,12 @@ class Hand(Browser):
             self.message(until)
         self.wait(DRAWN)
 
+    def drop_files(self, *paths):
+        """Drops files on the picture."""
+        data = {"items": [], "files": [os.path.abspath(path) for path in paths], "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            self.send("Input.dispatchDragEvent", type=kind, x=300, y=250, data=data)
+
     def wait(self, condition, seconds=60):
         """Until an expression of the page is true; longer where others use the machine, too."""
         seconds = round(seconds * max(1, 2 * os.getloadavg()[0] / os.cpu_count()))

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "body/binding.h"
 #include "body/incremental_cache.h"
 #include "contact/embedding/untangle.h"
 #include "geometry/distance.h"
@@ -383,10 +384,7 @@ class SurfaceEmbedder {
     return nearest.empty() ? std::vector<NodeId>() : with_neighbors(NodeId(nearest[0]));
   }
   // The node that carries an old surface vertex.
-  NodeId carrying_node(SurfaceVertexId v) const {
-    const auto master = v.valid() ? in_.body.binding.master[v.index()] : SurfaceVertexId();
-    return master.valid() ? in_.body.binding.master_node[master.index()] : NodeId();
-  }
+  NodeId carrying_node(SurfaceVertexId v) const { return v.valid() ? geo::carrying_node(in_.body, v) : NodeId(); }
   std::vector<NodeId> nodes_of(SurfaceVertexId v) const { return with_neighbors(carrying_node(v)); }
   // Eq. 1 at x, blended over the nodes of `nodes` whose support contains x; the first if none does.
   Vec3 displacement(const Vec3& x, const std::vector<NodeId>& nodes) const {

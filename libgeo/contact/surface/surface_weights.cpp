@@ -191,7 +191,7 @@ void SurfaceWeights::compute(const Body& body, const Solid& solid, std::span<con
       const Vec3& x = rest_[v] = body.surface.point(body.surface.site(id));
       area_[v] = vertex_area(body.surface, id);
       masters_[v] = master_nodes(body, id);
-      carrier_nodes(body, id, bound);
+      carriers_beside(body, id, masters_[v], bound);
       if (bound.empty()) continue;
       // Kernel weights replace distances. If all vanish, the first node carries the vertex.
       double total = 0;

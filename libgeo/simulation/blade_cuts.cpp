@@ -129,6 +129,7 @@ BladeCuts::Advance BladeCuts::plan_advance(const EdgeFront& front, std::span<con
   }
   if (blade.resistance > 0) stay_behind(body_, solid, blade.resistance, {.edge = a.edge, .run = run}, a.to);
   a.retreating = hold_retreating(body_.surface, a.edge.front, a.spacing, a.to);
+  hold_sliding(a.edge.front, a.spacing, a.to);
   cross_first(body_.surface, a.edge.front, a.spacing, a.to);
   const std::vector<Vec3> resolved = places.resolved(a.to);
   for (std::size_t i = 0; i < a.to.size(); ++i)

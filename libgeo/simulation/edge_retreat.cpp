@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "simulation/existing_cuts.h"
+#include "simulation/mapped_places.h"
 
 namespace geo {
 namespace {
@@ -55,6 +56,12 @@ std::size_t hold_retreating(const Complex& surface, const FrontState& front, std
       ++count;
     }
   return count;
+}
+
+void hold_sliding(const FrontState& front, std::span<const double> spacing, std::vector<Vec3>& to) {
+  if (!front.has_moved) return;
+  for (std::size_t i = 0; i < to.size(); ++i)
+    if (distance_from_front(front, to[i]) < snap_spacings * spacing[i]) to[i] = front.points[i].position;
 }
 
 }  // namespace geo

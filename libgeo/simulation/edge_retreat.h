@@ -18,6 +18,12 @@ namespace geo {
 std::size_t hold_retreating(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                             std::vector<Vec3>& to);
 
+/// Holds the points that would stay on the line of their front, nearer to it than a sheet snaps
+/// (snap_spacings): where an edge slides along itself, or a point is inserted between two that
+/// rest. The strip has no area but that of rounding, and would leave material between its sides.
+/// `spacing`: of the nodes at each point, model units.
+void hold_sliding(const FrontState& front, std::span<const double> spacing, std::vector<Vec3>& to);
+
 /// Whether the way from a point of a front to `to` leads back along the sheet of its crack.
 /// `spacing`: of the nodes there.
 bool leads_back(const Complex& surface, const FrontState& front, const Vec3& from, const Vec3& to, double spacing);

@@ -46,6 +46,24 @@ SheetPlace nearest_sheet(const Complex& surface, const Vec3& p, double reach, co
 
 bool is_crack(std::int32_t crack) { return crack != 0; }
 
+// The place farthest back on the straight way from `now` to `before` that is in the same air: that
+// which the way leads through at `now`, or the first that it comes to. `now` where it comes to none.
+Vec3 place_in_air(const Complex& surface, const Vec3& now, const Vec3& before, double spacing) {
+  constexpr double probe = 0.25;  // spacings between places that are looked at
+  const double count = std::ceil((before - now).norm() / (probe * spacing));
+  bool has_left = !is_inside(surface, now);
+  Vec3 farthest = now;
+  for (int k = 1; k <= count; ++k) {
+    const Vec3 place = now + k / count * (before - now);
+    const bool inside = is_inside(surface, place);
+    if (inside && has_left) break;
+    if (inside) continue;
+    has_left = true;
+    farthest = place;
+  }
+  return farthest;
+}
+
 // The marked index nearest to i; nothing where none is marked.
 std::optional<std::size_t> nearest_marked(const std::vector<std::uint8_t>& marked, std::size_t i) {
   for (std::size_t d = 0; d < marked.size(); ++d) {
@@ -124,7 +142,6 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
                                     std::span<const EdgePoint> run, std::span<const EdgeFront> fronts) {
   std::vector<EdgePoint> begin(run.begin(), run.end());
   const Complex& surface = moved.body.surface;
-  if (surface.crack_count() == 0) return begin;
   std::vector<std::uint8_t> is_whole;
   for (const EdgePoint& p : run) is_whole.push_back(is_inside(surface, p.material));
   // An edge that has left a cut for air cuts nothing.
@@ -138,7 +155,11 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
   for (std::size_t i = 0; i < begin.size(); ++i) {
     EdgePoint& p = begin[i];
     const auto place = start.map().to_material(start.pose() * place_on(blade, p.at), memory, &p.material);
-    if (!place.in_support) continue;
+    if (!place.in_support) {
+      const Vec3 from = start.map().to_material_of(p.node, start.pose() * place_on(blade, p.at));
+      p.material = place_in_air(surface, p.material, from, p.spacing);
+      continue;
+    }
     is_in_air[i] = !is_inside(surface, place.position);
     if (is_in_air[i]) p.material = place.position;
     if (is_in_air[i] || !is_whole[i] || !cuts.contain(place.position, p.spacing)) continue;

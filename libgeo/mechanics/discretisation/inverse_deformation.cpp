@@ -201,6 +201,11 @@ NodeId InverseDeformation::nearest_node(const Vec3& y, const Vec3* before) const
   return NodeId(holding.empty() ? nearest[0] : *std::min_element(holding.begin(), holding.end(), less));
 }
 
+Vec3 InverseDeformation::to_material_of(NodeId node, const Vec3& world) const {
+  const std::size_t i = node.index();
+  return body_.nodes.position[i] + safe_inverse(Mat3::Identity() + gradient_[i]) * (world - world_[i]);
+}
+
 InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, VertexCache& cache,
                                                              const Vec3* before) const {
   const NodeId nearest = nearest_node(y, before);
@@ -212,18 +217,15 @@ InverseDeformation::Location InverseDeformation::to_material(const Vec3& y, Vert
   // counts fully up to half a support radius apart. From one radius on it does not count, because
   // the nearest node does not carry the place that it gives. The result depends little on this: it
   // is only where the iteration begins.
-  const auto affine_inverse = [&](std::size_t i) {
-    return Vec3(nodes.position[i] + safe_inverse(Mat3::Identity() + gradient_[i]) * (y - world_[i]));
-  };
   std::vector<std::uint32_t> candidates;
   grid_.within(world_, y, nodes.radius[a], candidates);
-  const Vec3 guess = affine_inverse(a);
+  const Vec3 guess = to_material_of(nearest, y);
   Vec3 sum = Vec3::Zero();
   double total = 0;
   for (const auto i : candidates) {
     const double w = kernel((y - world_[i]).norm() / nodes.radius[i], 1.0);
     if (!(w > 0)) continue;
-    const Vec3 x = affine_inverse(i);
+    const Vec3 x = to_material_of(NodeId(i), y);
     const double agreeing = w * fade((x - guess).norm() / nodes.radius[a], 0.5, 1);
     sum += agreeing * x;
     total += agreeing;

@@ -42,6 +42,8 @@ class InverseDeformation {
     VertexCache none;
     return to_material(world, none);
   }
+  /// The place to which the affine map of one node takes a world position, however far it is.
+  Vec3 to_material_of(NodeId node, const Vec3& world) const;
 
  private:
   /// The nodes that take part at a world position; valid within half of the largest support of

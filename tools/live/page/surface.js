@@ -158,7 +158,7 @@ class Surface {
   }
   fillRest() {
     const { groups, groupVertex, first } = this.corners, rest = this.rest.array;
-    if (live.rest.length < 3 * live.vertices) return;
+    if (live.rest.length < 3 * live.vertices) return this.wounds.clear();
     for (let g = 0; g < groups; g++) {
       const v = 3 * groupVertex[g];
       rest[3 * g] = live.rest[v], rest[3 * g + 1] = live.rest[v + 1], rest[3 * g + 2] = live.rest[v + 2];

@@ -144,8 +144,7 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
   const Complex& surface = moved.body.surface;
   std::vector<std::uint8_t> is_whole;
   for (const EdgePoint& p : run) is_whole.push_back(is_inside(surface, p.material));
-  // An edge that has left a cut for air cuts nothing.
-  if (std::count(is_whole.begin(), is_whole.end(), 1) == 0) return begin;
+  const bool is_all_in_air = std::count(is_whole.begin(), is_whole.end(), 1) == 0;
   const MapAt start(moved, blade, before);
   const ExistingCuts cuts(surface, fronts);
   const MappedPlaces places(moved.body);
@@ -160,6 +159,7 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
       p.material = place_in_air(surface, p.material, from, p.spacing);
       continue;
     }
+    if (is_all_in_air) continue;  // an edge that has left a cut for air cuts nothing
     is_in_air[i] = !is_inside(surface, place.position);
     if (is_in_air[i]) p.material = place.position;
     if (is_in_air[i] || !is_whole[i] || !cuts.contain(place.position, p.spacing)) continue;

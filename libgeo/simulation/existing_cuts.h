@@ -51,7 +51,8 @@ class ExistingCuts {
 
 /// Where the front of a run begins. A point that has come from a cut, or from air, since the
 /// fraction `before` of the time step begins there; in a cut, a twentieth of a node spacing over
-/// its sheet. The others begin where they are. `fronts`: of the blade.
+/// its sheet. One that has come from beyond the supports of nodes begins as far back on its way as
+/// there is air. The others begin where they are. `fronts`: of the blade.
 std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
                                     std::span<const EdgePoint> run, std::span<const EdgeFront> fronts);
 

@@ -37,11 +37,13 @@ class Tab(Hand):
 
     def wait(self, condition, seconds=60):
         """Until an expression of the page is true, for so many seconds of the worker's processor: they do not count while the machine
-        stands still, or others use it. A worker that does nothing is waited for ten times as long."""
-        before, end = worker_seconds(self), time.monotonic() + 10 * seconds
+        stands still, or others use it. A worker that does nothing is waited for two minutes."""
+        before, used, worked = worker_seconds(self), 0, time.monotonic()
         while not self.run(f"Boolean({condition})"):
-            used = worker_seconds(self) - before
-            assert used < seconds and time.monotonic() < end, \
+            now = worker_seconds(self) - before
+            if now > used:
+                used, worked = now, time.monotonic()
+            assert used < seconds and time.monotonic() < worked + 120, \
                 f"not after {used:.0f} s of the worker: {condition}; {self.run('JSON.stringify(live.stats) + $(`notice`).textContent')}"
             time.sleep(0.05)
 
@@ -76,7 +78,8 @@ def press_save(hand, format):
 
 def saved(hand, format):
     """Bytes that a click on the link saves."""
-    hand.run("window.blob = null; URL.createObjectURL = (blob) => { window.blob = blob; return 'data:,'; }")
+    hand.run("""window.blob = null, window.address ??= URL.createObjectURL;
+      URL.createObjectURL = (blob) => { window.blob = blob, URL.createObjectURL = window.address; return 'data:,'; }""")
     press_save(hand, format)
     hand.wait("window.blob !== null")
     return base64.b64decode(hand.run("""window.blob.arrayBuffer().then((buffer) => {

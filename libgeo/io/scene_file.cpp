@@ -127,6 +127,7 @@ void read_body_table(TomlTable& t, Scene& s) {
   t.get("across", body.sampling.across, 0, 100);
   t.get("k", s.k, 3, 1000);
   t.get("scale", body.scale, 1e-9, 1e9);
+  t.get("refine", body.refine, 0, 1e12);
   t.get("position", body.place.position);
   read_rotation(t, body.place, "body.rotation");
   t.get("velocity", body.velocity);

@@ -152,6 +152,7 @@ void SceneWriter::body(const SceneBody& b, const Scene& s, std::size_t index) {
   whole("across", static_cast<std::uint64_t>(b.sampling.across));
   whole("k", static_cast<std::uint64_t>(s.k));
   key("scale", b.scale);
+  if (b.refine > 0) key("refine", b.refine);
   key("position", b.place.position);
   rotation(b.place.rotation);
   key("velocity", b.velocity);

@@ -45,8 +45,9 @@ PlacedModels place_models(const Scene& scene, std::vector<TriangleMesh> meshes) 
   models.bodies = std::move(meshes);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const SceneBody& body = scene.bodies[b];
-    if (is_identity(body)) continue;  // the vertices stay as they are, to the bit
-    for (Vec3& p : models.bodies[b].vertices) p = body.place * (body.scale * p);
+    if (!is_identity(body))  // else the vertices stay as they are, to the bit
+      for (Vec3& p : models.bodies[b].vertices) p = body.place * (body.scale * p);
+    if (body.refine > 0) models.bodies[b] = refined(models.bodies[b], body.refine);
   }
   if (models.bodies.size() == 1) {
     models.all = models.bodies[0];

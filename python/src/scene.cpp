@@ -25,7 +25,7 @@ const std::map<std::string, std::string>& keywords() {
          {"model", "young", "poisson", "density", "volume_term", "damping", "viscosity", "discretisation",
           "mode_penalty", "yield", "creep", "most_plastic"}},
         {"body.",
-         {"mesh", "spacing", "spacing_percent", "nodes", "levels", "across", "k", "scale", "velocity", "spin"}},
+         {"mesh", "spacing", "spacing_percent", "nodes", "levels", "across", "k", "scale", "refine", "velocity", "spin"}},
         {"time.", {"frames", "frame_rate", "step", "accuracy", "checkpoint_every", "integrator", "seed"}},
         {"fracture.",
          {"strength", "toughness", "variation", "grain", "speed", "branching", "apart", "cracks", "cracks_per_step",

@@ -322,7 +322,7 @@ def drop():
     hand.wait("surface.painted !== null")
     red = pictures.count(hand, "r > 2 * g && r > 2 * b && r > 60")
     check(f"drop: {red} pixels are red", red > 2000)
-    check("drop: the new body is not the box", hand.run("surface.corners.slots") == 12 and hand.run("$('wait').hidden"))
+    check("drop: the new body is not the box, or its skin is coarse", hand.run("surface.corners.slots") > 200 and hand.run("$('wait').hidden"))
     sides = [hand.place([a, 0.5, 0.5])[0] for a in (0, 1)]
     check(f"drop: the box is not in view: {sides}", all(0 < s < 640 for s in sides) and abs(sides[0] - sides[1]) > 80)
     x, y = hand.place([0.5, 0.5, 0.5])

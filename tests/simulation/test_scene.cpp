@@ -1,11 +1,16 @@
 // Motion by keyframes, strength of materials, grips, and the fronts of edges.
 #include <catch2/catch.hpp>
+
+#include <algorithm>
 #include <numbers>
+#include <sstream>
 
 #include "base/random.h"
 #include "kerf/error.h"
 #include "kerf/files.h"
+#include "kerf/mesh.h"
 #include "kerf/scene.h"
+#include "kerf/simulation.h"
 #include "simulation/edge_front.h"
 #include "simulation/grips.h"
 #include "simulation/strength.h"
@@ -165,4 +170,29 @@ TEST_CASE("keys of the former contact between bodies are read where they mean wh
   // The remedies are read.
   CHECK_FALSE(parse_scene("[body]\nmesh = 'a'\n[contact]\nself = false\n", "s.toml").self_contact);
   CHECK(parse_scene("[body]\nmesh = 'a'\n[contact]\nself = true\n", "s.toml").self_contact);
+}
+
+TEST_CASE("a skin is refined after its model is scaled and placed, body by body, and keeps its volume") {
+  const Scene scene = parse_scene(
+      "[[body]]\nmesh = 'a'\nscale = 2\nposition = [5, 0, 0]\nrefine = 0.3\n[[body]]\nmesh = 'b'\n", "s.toml");
+  const TriangleMesh block = make_block({1, 1, 1}, 1);
+  const PlacedModels models = place_models(scene, {block, block});
+  const TriangleMesh& fine = models.bodies[0];
+  double longest = 0;
+  for (const Triangle& t : fine.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      longest = std::max(longest, (fine.vertices[t[k]] - fine.vertices[t[(k + 1) % 3]]).norm());
+  CHECK(longest <= 0.3);
+  CHECK(longest > 0.15);
+  CHECK(signed_volume(fine) == Approx(8).epsilon(1e-12));
+  CHECK(bounding_box(fine).lo == Vec3(5, 0, 0));
+  CHECK(models.bodies[1].triangles == block.triangles);
+  CHECK(models.bodies[1].vertices == block.vertices);
+
+  std::ostringstream written;
+  write_scene(written, scene, "");
+  const Scene read = parse_scene(written.str(), "t.toml");
+  CHECK(read.bodies[0].refine == 0.3);
+  CHECK(read.bodies[1].refine == 0);
+  CHECK_THROWS_AS(parse_scene("[body]\nmesh = 'a'\nrefine = -1\n", "s.toml"), InputError);
 }

@@ -40,7 +40,8 @@ class Random {
 // An edge of four times the model's radius passes its middle, or near it, and turns on the way. In
 // each step it goes on by another length, and it rests in some, as a pointer does. From `time` on.
 Blade random_blade(Random& random, const Vec3& center, double radius, double time, double dt) {
-  Blade blade{.name = "stroke"};
+  Blade blade;
+  blade.name = "stroke";
   const int parts = static_cast<int>(random.between(4, 24));
   for (int i = 0; i <= parts; ++i) blade.points.push_back({0, 0, 2 * radius * (2.0 * i / parts - 1)});
   const Vec3 along = random.direction(), way = along.cross(random.direction()).normalized();

@@ -1,6 +1,8 @@
 // The scene is text, as a user would write it: overrides then work as they do for files.
 #include "live/bare_model.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <random>
 #include <utility>
@@ -18,6 +20,15 @@ std::string row(const geo::Vec3& p) {
   return "[" + tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z()) + "]";
 }
 
+// The mean distance of so many nodes in a solid, or, where it is thin, side by side in a sheet. A
+// skin of longer edges would hide how the nodes move.
+double spacing_of(const geo::TriangleMesh& mesh, int nodes) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    area += 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
+  return std::max(std::cbrt(geo::signed_volume(mesh) / nodes), std::sqrt(0.5 * area / nodes));
+}
+
 // Gravity is such that a fall over the model's own size takes about 0.6 s, as that of a thing that
 // one holds in two hands. Young's modulus is a hundred times the weight per area.
 std::string scene_of(const geo::TriangleMesh& mesh, const std::string& path, int nodes, char up) {
@@ -30,7 +41,7 @@ std::string scene_of(const geo::TriangleMesh& mesh, const std::string& path, int
   low[axis] = box.lo[axis];
   const double gravity = falls * size;
   return "gravity = " + row(-gravity * normal) + "\n[body]\nmesh = " + tool::quoted(path) +
-         "\nnodes = " + std::to_string(nodes) +
+         "\nnodes = " + std::to_string(nodes) + "\nrefine = " + tool::number(spacing_of(mesh, nodes)) +
          "\n[material]\nyoung = " + tool::number(stiffness * density * gravity * size) +
          "\ndensity = " + tool::number(density) + "\npoisson = 0.35\ndamping = 1.5\n[ground]\npoint = " + row(low) +
          "\nnormal = " + row(normal) +

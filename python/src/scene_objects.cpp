@@ -19,6 +19,7 @@ void bind_body_and_grip(py::module_& module) {
           "nodes", [](const SceneBody& b) { return b.sampling.count; }, "Wanted number of nodes; 0: by spacing.")
       .def_readonly("spacing_percent", &SceneBody::spacing_percent, "Spacing in percent of the model's diagonal.")
       .def_readonly("scale", &SceneBody::scale, "Of the model, applied before the pose.")
+      .def_readonly("refine", &SceneBody::refine, "Longest edge of the skin, model units; 0: as modelled.")
       .def_property_readonly(
           "place", [](const SceneBody& b) { return pose_to(b.place); },
           "Pose in the world: position and quaternion (w, x, y, z).")

@@ -87,6 +87,7 @@ class Scenes(unittest.TestCase):
         self.assertEqual((scene.frames, scene.frame_rate, scene.ground), (6, 24, True))
         np.testing.assert_allclose(scene.blades[0].keys[1], [0.5, 0.507, 0.5, -0.2, 0, 0, 1, 8])
         self.assertEqual(kerf.Scene(SCENE, model="stvk").material.model, "stvk")
+        self.assertEqual(kerf.Scene(SCENE, refine=0.2).bodies[0].refine, 0.2)
         self.assertEqual(list(kerf.Scene(SCENE, gravity=np.array([0, -9, 0])).gravity), [0, -9, 0])
         self.assertEqual(kerf.parse_motion("0 1 2 3 0 0 1 90", "rows").shape, (1, 8))
 

@@ -473,7 +473,9 @@ def guide():
     # Another body is in the middle, whatever the one before did; its file may be chosen by a button.
     at = hand.run("live.time")
     hand.wait(f"live.time > {at} + 0.3", seconds=200)
-    hand.run("live.position.fill(40)")  # as of pieces that fell off the table
+    hand.key(" ")
+    hand.wait("live.stats.paused && live.frame === null", seconds=20)  # the space bar is not the Help button's, which was clicked
+    hand.run("surface.arrive(), live.position.fill(9), 1")  # as of a body that has flown away
     chosen = hand.send("Runtime.evaluate", expression="$('file')")["result"]["objectId"]
     with open(f"{models}/polyp.ply", "rb") as file, open("other.ply", "wb") as copy:
         copy.write(file.read())

@@ -141,10 +141,11 @@ function listenToKeys() {
   });
 }
 function listenToControls() {
-  // A control that was clicked does not keep the focus: the space bar pauses. The keyboard's own focus stays.
+  // A control that was clicked does not keep the focus: the space bar pauses. Nor does one get it back
+  // when the dialog that it has opened is closed. The keyboard's own focus stays.
   document.addEventListener("click", (e) => {
     if (e.detail > 0 && document.activeElement.matches("button, a, input[type=checkbox]")) document.activeElement.blur();
-  });
+  }, true);
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
   for (const key of ["skin", "paint", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "cells", "look"]) {

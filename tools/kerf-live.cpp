@@ -10,6 +10,7 @@
 #include <kerf/vectors.h>
 #include "live/bare_model.h"
 #include "live/browser.h"
+#include "live/gallery.h"
 #include "live/loop.h"
 #include "live/memory.h"
 #include "live/page_text.h"
@@ -22,11 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Command {
-  std::string scene, address = "127.0.0.1", record, up = "z";
+  std::string scene = std::string(1, '\0');  // not given: no argument can be this, while an empty one is a mistake
+  std::string address = "127.0.0.1", record, up = "z";
   std::vector<std::string> settings;
   int port = 0, nodes = 600;
   double rate = 60, linger = 30;
   bool portable = false, no_browser = false, no_blades = false;
+  bool has_scene() const { return scene != Command().scene; }
 };
 
 // Makes a run of a scene or model, and warns of what may not be as meant.
@@ -50,7 +53,25 @@ live::BareModel read_model(const Command& command, const live::ModelFile& file, 
   return model;
 }
 
+// A model that was dropped on the page.
+live::Shown open_dropped(const Command& command, live::ModelFile file, const tool::Tool& t) {
+  if (live::is_scene(file.name))
+    throw geo::InputError(file.name + ": is a scene, which names other files: start kerf-live with it");
+  if (file.up == 0) file.up = live::up_axis(file.name);
+  return shown(command, file.name, read_model(command, file, t), t);
+}
+
+// A body of the gallery, for a start without a file. The page shows the others beside it.
+live::Shown open_first_body(const Command& command, const tool::Tool& t) {
+  live::ModelFile file = live::gallery_model("apple");
+  live::Shown result = open_dropped(command, file, t);
+  result.model = {.name = std::move(file.name), .bytes = std::move(file.bytes)};
+  result.from_page = true;
+  return result;
+}
+
 live::Shown open_command(const Command& command, const tool::Tool& t) {
+  if (!command.has_scene()) return open_first_body(command, t);
   if (live::is_scene(command.scene)) {
     sim::Setup setup = sim::read_setup(command.scene, sim::parse_overrides(command.settings));
     return shown(command, command.scene, {std::move(setup), {}}, t);
@@ -59,14 +80,6 @@ live::Shown open_command(const Command& command, const tool::Tool& t) {
   live::Shown result = shown(command, command.scene, read_model(command, file, t), t);
   result.model = {.name = fs::path(file.name).filename().string(), .bytes = file.bytes};
   return result;
-}
-
-// A model that was dropped on the page.
-live::Shown open_dropped(const Command& command, live::ModelFile file, const tool::Tool& t) {
-  if (live::is_scene(file.name))
-    throw geo::InputError(file.name + ": is a scene, which names other files: start kerf-live with it");
-  if (file.up == 0) file.up = live::up_axis(file.name);
-  return shown(command, file.name, read_model(command, file, t), t);
 }
 
 void require_options(const Command& command) {
@@ -111,8 +124,9 @@ void serve(const Command& command, const tool::Tool& t) {
     live::Server server(
         {.address = command.address, .port = command.port, .token = live::random_token(), .page = live::page_text()},
         inbox);
-    std::cout << server.url() << std::endl;
-    const bool opened = !command.no_browser && live::open_browser(server.url());
+    const std::string url = server.url() + (command.has_scene() ? "" : "#bodies=true");
+    std::cout << url << std::endl;
+    const bool opened = !command.no_browser && live::open_browser(url);
     t.say(opened ? "kerf-live: opened in the browser; Ctrl-C ends it"
                  : "kerf-live: open this address in a browser; Ctrl-C ends it");
     const auto open = [&](const live::ModelFile& file) { return open_dropped(command, file, t); };
@@ -129,11 +143,15 @@ int main(int argc, char** argv) {
   tool::Tool t("kerf-live",
                "Simulates a scene, or a model on the ground, while hands cut, grab and pin it in a browser. Prints the "
                "address of the page.",
-               R"(  kerf-live samples/scenes/polyp.toml --no-blades
+               R"(  kerf-live
+  kerf-live samples/scenes/polyp.toml --no-blades
   kerf-live models/bear.off --up y --record bear.toml && kerf-sim bear.toml -o out/bear)");
   Command command;
   t.patience = 5;  // a frame may take long
-  t.argument("SCENE|MODEL", command.scene, "Scene file (TOML), or a model: OBJ, PLY, STL, OFF or GLB");
+  t.argument(
+      "SCENE|MODEL", command.scene,
+      "Scene file (TOML), or a model: OBJ, PLY, STL, OFF or GLB; without one the page begins with a choice of bodies",
+      false);
   t.option("--port", command.port, "Port to listen at; 0: a free one");
   t.option("--address", command.address, "Address of the interface to listen at; 0.0.0.0: all, for other devices");
   t.option("--rate", command.rate,

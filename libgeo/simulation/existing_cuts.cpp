@@ -47,7 +47,7 @@ SheetPlace nearest_sheet(const Complex& surface, const Vec3& p, double reach, co
 bool is_crack(std::int32_t crack) { return crack != 0; }
 
 // The place farthest back on the straight way from `now` to `before` that is in the same air: that
-// which the way leads through at `now`, or the first that it comes to. `now` where it comes to none.
+// at `now`, or the first that the way comes to. `now` where it comes to none.
 Vec3 place_in_air(const Complex& surface, const Vec3& now, const Vec3& before, double spacing) {
   constexpr double probe = 0.25;  // spacings between places that are looked at
   const double count = std::ceil((before - now).norm() / (probe * spacing));

@@ -9,6 +9,8 @@ look: no picture depends on the order of triangles, walls do not clip, normals o
 gone: the page says that the program has ended, or does not answer; work that nobody looks at is kept.
 drop: a model that is dropped on the page is opened; one that cannot be is refused by a sentence.
 keys: a cut by the keyboard alone, dark colours, controls that nothing covers.
+begin: a start without a model shows the choice of bodies, once.
+guide: clicks that do nothing say so, the body is found again, help begins at its top, a new body is in the middle, a button opens files.
 """
 import glob, os, signal, subprocess, time
 import pictures
@@ -402,6 +404,89 @@ def keys():
     said = "".join(session.program.said)
     check(f"keys: it says {said}", "kerf-live: no node is in the box" in said and "kerf-sim" not in said)
     check("keys: exit code", session.program.stop() == 0)
+
+
+def begin():
+    # Without a model the page begins with the choice of bodies; an apple is behind it.
+    program = Program(os.path.join(tools, "kerf-live"))
+    hand.errors.clear()
+    hand.visit(program.address + "#bodies=true")
+    check("begin: no choice of bodies", hand.run("$('bodies').open && live.told.name === 'apple' && state.look === 'apple'"))
+    hand.key("Tab")
+    hand.button('[data-body="stone"]')
+    hand.wait("live.told.name === 'stone' && live.frame === null")
+    hand.reload()
+    check("begin: a page that is loaded again asks once more", hand.run("!$('bodies').open && live.told.name === 'stone'"))
+    program.save("model", "stone.ply")
+    check("begin: the body has no model", os.path.getsize("stone.ply") > 1000)
+    check(f"begin: the console has {hand.errors}", not hand.errors)
+    check("begin: exit code", program.stop() == 0)
+    empty = subprocess.run([os.path.join(tools, "kerf-live"), "--no-browser", ""], capture_output=True, text=True, timeout=60)
+    check(f"begin: an empty name is taken for none: {empty}", empty.returncode != 0 and empty.stdout == "")
+
+
+MIDDLE = "(() => { placeCamera(); const p = bodySphere().middle.project(camera); return [p.x, p.y, bodySphere().radius * camera.projectionMatrix.elements[5] / view.distance]; })()"
+
+
+def guide():
+    # Each act has an answer, and nobody loses the body or the help.
+    session = model("polyp")
+    noticed = lambda: hand.run("$('notice').hidden ? '' : $('notice').textContent")
+    hint = lambda: hand.run("$('hint').textContent")
+    x, y = hand.place([(a + b) / 2 for a, b in zip(*hand.run("live.told.box"))])
+    hand.click(x, y)
+    check(f"guide: a click of the knife has the answer '{noticed()}'", noticed().startswith("A click does not cut. Drag across"))
+    for tool in ("clamp", "pin", "break"):
+        hand.run("$('notice').hidden = true")
+        hand.tool(tool)
+        hand.click(20, 300)
+        check(f"guide: a click of the {tool} beside the body has the answer '{noticed()}'", noticed() == "That is beside the body: click on it.")
+    hand.tool("clamp")
+    hand.click(x, y)
+    check(f"guide: after the first place the clamp says '{hint()}'", hint().startswith("Click the place that it is to be drawn to"))
+    hand.tool("pin")
+    hand.tool("clamp")
+    check(f"guide: the first place of a clamp outlives the tool: '{hint()}'", hand.run("clamp.first === null") and hint().startswith("Click two places"))
+    hand.click(x, y), hand.click(x, y + 12)
+    check(f"guide: the clamp says '{noticed()}', '{hint()}'", noticed().startswith("Both places are drawn together") and hint().startswith("Click two places"))
+
+    # A body that is out of the picture is found; help is read from its begin.
+    hand.run("view.target.x += 6, redraw()")
+    hand.wait("!$('find').hidden")
+    hand.button("#find")
+    hand.wait("$('find').hidden")
+    at = hand.run(MIDDLE)
+    check(f"guide: the body is shown at {at}", max(map(abs, at[:2])) < 0.2)
+    hand.send("Emulation.setDeviceMetricsOverride", width=390, height=700, deviceScaleFactor=1, mobile=False)
+    hand.wait("window.innerWidth === 390")
+    if hand.run("!document.body.classList.contains('wide')"):
+        hand.key("m")
+    hand.button("#help-button")
+    hand.wait("$('help').open")
+    top, close = hand.run("[document.querySelector('#help h2').getBoundingClientRect().top, document.querySelector('#help button').getBoundingClientRect().bottom]")
+    check(f"guide: help begins at {top}, and is closed at {close}", top > 0 and close < 700)
+    hand.button("#help button")
+    hand.wait("!$('help').open")
+    hand.send("Emulation.setDeviceMetricsOverride", width=640, height=560, deviceScaleFactor=0.5, mobile=False)
+    hand.wait("window.innerWidth === 640")
+
+    # Another body is in the middle, whatever the one before did; its file may be chosen by a button.
+    at = hand.run("live.time")
+    hand.wait(f"live.time > {at} + 0.3", seconds=200)
+    hand.key(" ")
+    hand.wait("live.stats.paused && live.frame === null", seconds=20)  # the space bar is not the Help button's, which was clicked
+    hand.run("surface.arrive(), live.position.fill(9), 1")  # as of a body that has flown away
+    chosen = hand.send("Runtime.evaluate", expression="$('file')")["result"]["objectId"]
+    with open(f"{models}/polyp.ply", "rb") as file, open("other.ply", "wb") as copy:
+        copy.write(file.read())
+    hand.key("i")
+    check("guide: no button opens a model", hand.run("$('open').getBoundingClientRect().width > 40 && $('open').getBoundingClientRect().bottom < 560"))
+    hand.send("DOM.setFileInputFiles", files=[os.path.abspath("other.ply")], objectId=chosen)
+    hand.wait("live.told.name === 'other' && live.frame === null && $('wait').hidden && !$('bodies').open", seconds=120)
+    at = hand.run(MIDDLE)
+    check(f"guide: the new body is seen at {at}", max(map(abs, at[:2])) < 0.2 and 0.5 < at[2] < 1.5)
+    check(f"guide: the console has {hand.errors}", not hand.errors)
+    check("guide: exit code", session.program.stop() == 0)
 
 
 run(globals())

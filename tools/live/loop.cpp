@@ -81,8 +81,7 @@ struct Turns::Impl {
     const auto begin = Clock::now();
     if (const std::string reason = session().advance(paused_); !reason.empty()) say("went back: " + reason);
     if (const std::size_t refused = session().stats().refused; refused > 0)
-      say(std::to_string(refused) + (refused == 1 ? " crack step" : " crack steps") +
-          " would have made surfaces cross; the cut goes on where it can");
+      say("a bit of the cut would make surfaces cross and is left out; it goes on where it can");
     const auto end = Clock::now();
     pacer_.add(begin, end);
     if (session().end_late_strokes(1 / session().original().frame_rate, latest_end) > 0)

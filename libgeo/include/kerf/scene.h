@@ -113,12 +113,12 @@ struct SceneBody {
   std::string name;
   std::string mesh;  ///< path of the model; from the scene file's folder unless absolute
   SampleOptions sampling;
-  double spacing_percent = 5;                 ///< of the model's diagonal, where sampling.spacing and count are 0
-  double scale = 1;                           ///< of the model, applied before the pose
-  double refine = 0;  ///< longest edge of the skin, model units after scaling: see refined(); 0: as modelled
-  Pose place;                                 ///< of the scaled model in the world
-  Vec3 velocity = Vec3::Zero();               ///< initial, model units per second
-  Vec3 spin = Vec3::Zero();                   ///< initial angular velocity about the centre of its nodes' box, rad/s
+  double spacing_percent = 5;    ///< of the model's diagonal, where sampling.spacing and count are 0
+  double scale = 1;              ///< of the model, applied before the pose
+  double refine = 0;             ///< longest edge of the skin, model units after scaling: see refined(); 0: as modelled
+  Pose place;                    ///< of the scaled model in the world
+  Vec3 velocity = Vec3::Zero();  ///< initial, model units per second
+  Vec3 spin = Vec3::Zero();      ///< initial angular velocity about the centre of its nodes' box, rad/s
   std::optional<Material> material;           ///< its own; none: the scene's
   std::optional<Prestretch> prestretch = {};  ///< its own; none: the scene's
 };

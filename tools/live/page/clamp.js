@@ -2,6 +2,7 @@
 // the middle between both; each is let go as a grab is.
 const clamp = {
   first: null,
+  hint: "Click the place that it is to be drawn to, or press Escape.",
   // The middle moves there in this many steps of 40 ms: pulled at once, a soft body tears its contacts apart.
   steps: 25,
   click(x, y) {
@@ -9,18 +10,18 @@ const clamp = {
     if (!hit) return false;
     if (!this.first) {
       this.first = hit;
-      notice({ notice: "Click the place that it is to be drawn to." });
     } else {
-      this.close(this.first, hit);
+      if (this.close(this.first, hit)) notice({ notice: "Both places are drawn together. Grab the end of a line to move it, click it to let go." });
       this.first = null;
     }
+    showHint();
     redraw();
     return true;
   },
   close(a, b) {
     const middle = a.point.clone().add(b.point).multiplyScalar(0.5);
+    if (!surface.corners.has(a.slot)) return notice({ error: "The first place was cut meanwhile: click both again" }), false;
     for (const place of [a, b]) {
-      if (!surface.corners.has(place.slot)) return notice({ error: "The first place was cut meanwhile: click both again" });
       const id = ++strokes, { slot: face, bary, point } = place;
       sendInput("grab", { id, phase: "begin", face, bary, to: toWorld(point) });
       const move = (step) => {
@@ -30,7 +31,11 @@ const clamp = {
       };
       move(1);
     }
+    return true;
   },
-  leave() { this.first = null; },
+  leave() {
+    this.first = null;
+    showHint();
+  },
 };
 clickTools.clamp = (x, y) => clamp.click(x, y);

@@ -30,8 +30,10 @@ const does = {
 function showTool() {
   for (const button of document.querySelectorAll("[data-tool]")) button.setAttribute("aria-pressed", String(button.dataset.tool === state.tool));
   $("canvas").dataset.tool = state.tool;
-  $("hint").textContent = does[state.tool];
+  clamp.leave();
+  showHint();
 }
+const showHint = () => $("hint").textContent = cursor.shown ? cursor.hint : clamp.first ? clamp.hint : does[state.tool];
 const showDepth = () => $("depth-value").textContent = state.depth >= 1 ? "through" : Math.round(100 * state.depth) + " %";
 
 const showCells = () => $("cells-value").textContent = String(state.cells);
@@ -76,7 +78,7 @@ function slide(name, last = false) {
 
 const orders = {
   undo: () => send({ undo: true }), redo: () => send({ redo: true }), reset: () => send({ reset: true }), pause: () => send({ pause: !live.stats.paused }), step: () => send({ step: true }),
-  help: () => $("help").showModal(), home: resetView, menu: toggleMenu, save: () => savePicture(),
+  help: () => ($("help").showModal(), $("help").scrollTop = 0), find: resetView, home: resetView, menu: toggleMenu, save: () => savePicture(),
   gallery: () => $("bodies").showModal(), record: () => recorder.toggle(),
 };
 function resetView() {
@@ -139,10 +141,11 @@ function listenToKeys() {
   });
 }
 function listenToControls() {
-  // A control that was clicked does not keep the focus: the space bar pauses. The keyboard's own focus stays.
+  // A control that was clicked does not keep the focus: the space bar pauses. Nor does one get it back
+  // when the dialog that it has opened is closed. The keyboard's own focus stays.
   document.addEventListener("click", (e) => {
     if (e.detail > 0 && document.activeElement.matches("button, a, input[type=checkbox]")) document.activeElement.blur();
-  });
+  }, true);
   for (const button of document.querySelectorAll("[data-tool]")) button.addEventListener("click", () => set("tool", button.dataset.tool));
   for (const [name, order] of Object.entries(orders)) $(name === "help" ? "help-button" : name).addEventListener("click", order);
   for (const key of ["skin", "paint", "walls", "wire", "nodes", "edges", "stress", "shadows", "plotted", "depth", "cells", "look"]) {
@@ -159,7 +162,8 @@ function listenToControls() {
 function followAddress() {
   const wishes = [...new URLSearchParams(location.hash.slice(1))];
   for (const [key, value] of wishes.sort(([a], [b]) => (a === "skin") - (b === "skin"))) {  // others change the skin, too
-    if (key in home) home[key] = view[key] = Number(value);
+    if (key === "bodies") galleryAsked = value === "true";
+    else if (key in home) home[key] = view[key] = Number(value);
     else if (key in state) set(key, value === "true" || value === "false" ? value === "true" : Number.isFinite(Number(value)) ? Number(value) : value);
   }
 }
@@ -172,8 +176,9 @@ function dress() {
   $("gravity").disabled = g === 0;
   showValues({ young: live.told.youngs?.[0] ?? live.told.youngs, friction: live.told.friction, gravity: live.told.gravity, damping: live.told.damping });
   world.begin();
-  resetView();
+  clamp.leave();
   $("wait").hidden = true;
+  beginWithGallery();
 }
 
 function begin() {

@@ -1,16 +1,16 @@
 // A pointer for the keyboard: arrow keys move a cross over the body, and Enter presses and releases what the tool does there.
 const cursor = {
-  shown: false, x: 0, y: 0,
+  shown: false, x: 0, y: 0, hint: "Arrow keys move the cross, with Shift by small steps. Enter begins and ends; Escape leaves.",
   show() {
     const canvas = $("canvas");
     this.shown = true, this.x = canvas.clientWidth / 2, this.y = canvas.clientHeight / 2;
     this.place();
-    $("hint").textContent = "Arrow keys move the cross, with Shift by small steps. Enter begins and ends; Escape leaves.";
+    showHint();
   },
   hide() {
     if (!this.shown) return;
     this.shown = false, $("cursor").hidden = true;
-    showTool();
+    showHint();
   },
   place() {
     $("cursor").hidden = false;

@@ -16,13 +16,15 @@ function listenToFiles() {
     openFiles([...e.dataTransfer.files]);
   });
 }
+// Shown until the first state of the new run, or the reason why there is none.
+function opening(name) { $("wait").textContent = `Opening ${name} …`, $("wait").hidden = false; }
 async function openFiles(files) {
   const models = files.filter((file) => openable.test(file.name));
-  if (models.length !== 1) return notice({ error: models.length === 0 ? `${files[0]?.name ?? "This"} cannot be opened here: drop a model (OBJ, PLY, STL, OFF or GLB)` : "Drop one model at a time" });
+  if (models.length !== 1) return notice({ error: models.length === 0 ? `${files[0]?.name ?? "This"} cannot be opened here: give a model (OBJ, PLY, STL, OFF or GLB)` : "Open one model at a time" });
   const [file] = models;
   if (files.reduce((sum, { size }) => sum + size, 0) > largestModel * 2 ** 20) return notice({ error: `${file.name} has more than ${largestModel} MB` });
   endStroke();
-  $("wait").textContent = `Opening ${file.name} …`, $("wait").hidden = false;
+  opening(file.name);
   try {
     const reason = await openModel(file, files.filter((other) => other !== file));
     if (reason !== "") notice({ error: reason });

@@ -4,7 +4,24 @@ const gallery = [
   ["tissue", "tissue", "scalpel"], ["board", "wood", "break"], ["log", "log", "break"], ["stone", "stone", "break"], ["letter", "clay", "knife"],
 ].map(([name, look, tool]) => ({ name, look, tool }));
 
+// An address with #bodies=true begins with the choice of bodies, once: a page that is loaded again shows the body.
+let galleryAsked = false;
+function beginWithGallery() {
+  if (!galleryAsked) return;
+  galleryAsked = false;
+  history.replaceState(null, "", location.pathname + location.search);
+  set("look", gallery.find(({ name }) => name === live.told.name)?.look ?? state.look);
+  orders.gallery();
+}
+
 function listenToGallery() {
+  $("open").addEventListener("click", () => $("file").click());
+  $("file").addEventListener("change", () => {
+    const files = [...$("file").files];
+    $("file").value = "";  // the same file may be chosen again
+    $("bodies").close();
+    if (files.length > 0) openFiles(files);
+  });
   for (const { name, look, tool } of gallery) {
     const button = document.createElement("button"), spot = document.createElement("i"), colors = looks[look];
     const css = (color) => "#" + color.toString(16).padStart(6, "0");
@@ -15,6 +32,7 @@ function listenToGallery() {
       $("bodies").close();
       endStroke();
       set("look", look), set("tool", tool);
+      opening(button.textContent);
       send({ show: name });
     });
     $("body-list").append(button);

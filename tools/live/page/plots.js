@@ -81,12 +81,22 @@ function showFigures() {
   $("slow").hidden = !slow && !stats.paused;
   $("slow").textContent = stats.paused ? "Paused" : slow ? `Slower than real time: ${Math.round(100 * stats.sim_rate)} %` : "";
   showValues(stats.set);
+  $("find").hidden = !isBodyAway();
+}
+
+// Whether the middle of the body is outside of the picture: a knife may push it away.
+function isBodyAway() {
+  if (live.position.length === 0 || hand.stroke) return false;
+  placeCamera();
+  const p = bodySphere().middle.project(camera), canvas = $("canvas"), edge = (pixels) => 1 - 2 * 40 / Math.max(pixels, 80);
+  return p.z > 1 || Math.abs(p.x) > edge(canvas.clientWidth) || Math.abs(p.y) > edge(canvas.clientHeight);
 }
 
 // What the program says: shown for some seconds.
 let noticeTimer = 0;
 function notice({ error, notice: text }) {
   const box = $("notice");
+  if (error !== undefined && wire.open) $("wait").hidden = true;
   box.textContent = error ?? text, box.hidden = false, box.classList.toggle("wrong", error !== undefined);
   clearTimeout(noticeTimer);
   noticeTimer = setTimeout(() => box.hidden = true, 5000);

@@ -16,6 +16,14 @@ function placesOf(e) {
   return places;
 }
 
+// A click that does nothing says so.
+function clickAt(x, y) {
+  const click = clickTools[state.tool];
+  if (!click) notice({ notice: `A click does not cut. ${does[state.tool]}` });
+  else if (!click(x, y)) notice({ notice: beside });
+}
+const beside = "That is beside the body: click on it.";
+
 function listenToPointer() {
   const canvas = $("canvas");
   let pending = null, pressed = null, spread = 0;  // pressed: where the orbit tool was, for a click
@@ -76,7 +84,7 @@ function listenToPointer() {
       if (e.type === "pointerup") moveStroke(e.offsetX, e.offsetY);
       if (e.ctrlKey || e.metaKey) keepHeld(hand.stroke);
       endStroke();
-    } else if (pending && e.type === "pointerup") clickTools[state.tool]?.(e.offsetX, e.offsetY);
+    } else if (pending && e.type === "pointerup") clickAt(e.offsetX, e.offsetY);
     if (pressed && e.type === "pointerup" && Math.hypot(e.offsetX - pressed.x, e.offsetY - pressed.y) < slop) clickTools.orbit(e.offsetX, e.offsetY);
     pending = pressed = null;
   };

@@ -8,6 +8,7 @@ const live = {
   told: null,      // JSON of the state
   stats: {},       // JSON of the newest frame
   frame: null,     // the newest frame that is not yet drawn
+  fresh: false,    // a run has been told, and its first frame is still to come
   time: 0, revision: -1, vertices: 0, nodes: 0,
   position: new Float32Array(0),  // shown coordinates
   rest: new Float32Array(0),      // places of the vertices in the material, likewise
@@ -30,6 +31,7 @@ function stateArrived(arrived) {
     about.unit = Math.max(0.5 * Math.hypot(...lo.map((x, k) => hi[k] - x)), 1e-9);
   }
   surface.begin(arrived);
+  live.fresh ||= first;
   if (first) dress();
 }
 function deltaArrived(delta) {
@@ -42,6 +44,7 @@ function frameArrived(frame, time) {
   if (frame.revision !== live.revision) throw new Error("A frame belongs to another surface");
   live.frame = frame, live.time = time, live.nodes = frame.nodes;
   surface.changed = true;
+  if (live.fresh) live.fresh = false, resetView();  // its first positions: those before are of another run
   told(frame.about);
   redraw();
 }

@@ -1,4 +1,5 @@
-// Strokes as a hand makes them: an edge that comes from air, passes a body and leaves it, in few steps or many.
+// Strokes as a hand makes them: an edge comes from air, passes a body and leaves it, in few steps
+// or many.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -20,7 +20,7 @@ std::string row(const geo::Vec3& p) {
   return "[" + tool::number(p.x()) + ", " + tool::number(p.y()) + ", " + tool::number(p.z()) + "]";
 }
 
-// The mean distance of so many nodes in a solid, or, where it is thin, side by side in a sheet. A
+// The mean distance of nodes that fill a solid, or, where it is thin, side by side in a sheet. A
 // skin of longer edges would hide how the nodes move.
 double spacing_of(const geo::TriangleMesh& mesh, int nodes) {
   double area = 0;

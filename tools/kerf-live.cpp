@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <kerf/body_file.h>
 #include <kerf/error.h>
@@ -23,13 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Command {
-  std::string scene = std::string(1, '\0');  // not given: no argument can be this, while an empty one is a mistake
+  std::optional<std::string> scene;  // none: a body of the gallery
   std::string address = "127.0.0.1", record, up = "z";
   std::vector<std::string> settings;
   int port = 0, nodes = 600;
   double rate = 60, linger = 30;
   bool portable = false, no_browser = false, no_blades = false;
-  bool has_scene() const { return scene != Command().scene; }
 };
 
 // Makes a run of a scene or model, and warns of what may not be as meant.
@@ -61,23 +61,16 @@ live::Shown open_dropped(const Command& command, live::ModelFile file, const too
   return shown(command, file.name, read_model(command, file, t), t);
 }
 
-// A body of the gallery, for a start without a file. The page shows the others beside it.
-live::Shown open_first_body(const Command& command, const tool::Tool& t) {
-  live::ModelFile file = live::gallery_model("apple");
-  live::Shown result = open_dropped(command, file, t);
-  result.model = {.name = std::move(file.name), .bytes = std::move(file.bytes)};
-  result.from_page = true;
-  return result;
-}
-
-live::Shown open_command(const Command& command, const tool::Tool& t) {
-  if (!command.has_scene()) return open_first_body(command, t);
-  if (live::is_scene(command.scene)) {
-    sim::Setup setup = sim::read_setup(command.scene, sim::parse_overrides(command.settings));
-    return shown(command, command.scene, {std::move(setup), {}}, t);
+// The page shows the other bodies of the gallery beside the first one.
+live::Shown open_command(const Command& command, const live::OpenModel& open, const tool::Tool& t) {
+  if (!command.scene) return live::open_from_page(open, live::gallery_model("apple"));
+  const std::string& path = *command.scene;
+  if (live::is_scene(path)) {
+    sim::Setup setup = sim::read_setup(path, sim::parse_overrides(command.settings));
+    return shown(command, path, {std::move(setup), {}}, t);
   }
-  const live::ModelFile file{.name = command.scene, .bytes = geo::read_all(command.scene)};
-  live::Shown result = shown(command, command.scene, read_model(command, file, t), t);
+  const live::ModelFile file{.name = path, .bytes = geo::read_all(path)};
+  live::Shown result = shown(command, path, read_model(command, file, t), t);
   result.model = {.name = fs::path(file.name).filename().string(), .bytes = file.bytes};
   return result;
 }
@@ -117,19 +110,19 @@ void record(const live::Session& session, const std::string& path, const tool::T
 void serve(const Command& command, const tool::Tool& t) {
   live::limit_free_memory();
   require_options(command);
-  live::Shown shown = open_command(command, t);
+  const auto open = [&](const live::ModelFile& file) { return open_dropped(command, file, t); };
+  live::Shown shown = open_command(command, open, t);
   live::Inbox inbox;
   live::LoopEnd end;
   {
     live::Server server(
         {.address = command.address, .port = command.port, .token = live::random_token(), .page = live::page_text()},
         inbox);
-    const std::string url = server.url() + (command.has_scene() ? "" : "#bodies=true");
+    const std::string url = server.url() + (command.scene ? "" : "#bodies=true");
     std::cout << url << std::endl;
     const bool opened = !command.no_browser && live::open_browser(url);
     t.say(opened ? "kerf-live: opened in the browser; Ctrl-C ends it"
                  : "kerf-live: open this address in a browser; Ctrl-C ends it");
-    const auto open = [&](const live::ModelFile& file) { return open_dropped(command, file, t); };
     end = live::run_loop(shown, inbox, server, {command.linger, &tool::Tool::goes_on, open});
   }
   if (end == live::LoopEnd::deserted)
@@ -150,8 +143,7 @@ int main(int argc, char** argv) {
   t.patience = 5;  // a frame may take long
   t.argument(
       "SCENE|MODEL", command.scene,
-      "Scene file (TOML), or a model: OBJ, PLY, STL, OFF or GLB; without one the page begins with a choice of bodies",
-      false);
+      "Scene file (TOML), or a model: OBJ, PLY, STL, OFF or GLB; without one the page begins with a choice of bodies");
   t.option("--port", command.port, "Port to listen at; 0: a free one");
   t.option("--address", command.address, "Address of the interface to listen at; 0.0.0.0: all, for other devices");
   t.option("--rate", command.rate,

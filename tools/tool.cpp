@@ -174,6 +174,10 @@ void Tool::argument(const std::string& name, std::string& value, const std::stri
   auto* option = parser_->app.add_option(name, value, help);
   if (required) option->required();
 }
+void Tool::argument(const std::string& name, std::optional<std::string>& value, const std::string& help) {
+  parser_->app.add_option_function<std::string>(
+      name, [&value](const std::string& text) { value = text; }, help);
+}
 void Tool::argument(const std::string& name, std::vector<std::string>& values, const std::string& help) {
   parser_->app.add_option(name, values, help);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ class Tool {
   Tool& operator=(const Tool&) = delete;
 
   void argument(const std::string& name, std::string& value, const std::string& help, bool required = true);
+  /// One that may be left out; an empty text is a value.
+  void argument(const std::string& name, std::optional<std::string>& value, const std::string& help);
   void argument(const std::string& name, std::vector<std::string>& values, const std::string& help);
   void option(const std::string& names, std::string& value, const std::string& help);
   void option(const std::string& names, std::vector<std::string>& values, const std::string& help);

@@ -117,9 +117,7 @@ std::string open_model(const std::string& name, const val& bytes, const val& bes
   if (!tab.turns) {
     try {
       geo::set_threads(1);
-      tab.shown = tab.options.open(file);
-      tab.shown.model = {.name = name, .bytes = file.bytes};
-      tab.shown.from_page = true;
+      tab.shown = live::open_from_page(tab.options.open, std::move(file));
       tab.options.linger = 0;
       tab.turns = std::make_unique<live::Turns>(tab.shown, tab.inbox, tab.page, tab.options);
       tab.inbox.put({the_page, live::Join{}});

@@ -153,10 +153,10 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
   std::vector<Vec3> rise(begin.size(), Vec3::Zero());  // of points in cuts, over the sheet
   for (std::size_t i = 0; i < begin.size(); ++i) {
     EdgePoint& p = begin[i];
-    const auto place = start.map().to_material(start.pose() * place_on(blade, p.at), memory, &p.material);
+    const Vec3 world = start.pose() * place_on(blade, p.at);
+    const auto place = start.map().to_material(world, memory, &p.material);
     if (!place.in_support) {
-      const Vec3 from = start.map().to_material_of(p.node, start.pose() * place_on(blade, p.at));
-      p.material = place_in_air(surface, p.material, from, p.spacing);
+      p.material = place_in_air(surface, p.material, start.map().to_material_of(p.node, world), p.spacing);
       continue;
     }
     if (is_all_in_air) continue;  // an edge that has left a cut for air cuts nothing

@@ -70,9 +70,7 @@ Strokes random_strokes(std::uint64_t seed, int count) {
   if (shape == 0) s.mesh = make_block({1, 1, 1}, 1);
   if (shape == 1) s.mesh = make_block({random.between(0.3, 1), 1, random.between(0.5, 1.5)}, 0.25);
   if (shape == 2) s.mesh = make_sphere(6);
-  Box3 box;
-  for (const Vec3& p : s.mesh.vertices) box.add(p);
-  const Vec3 center = 0.5 * (box.lo + box.hi);
+  const Vec3 center = bounding_box(s.mesh).center();
   double radius = 0;
   for (const Vec3& p : s.mesh.vertices) radius = std::max(radius, (p - center).norm());
   s.scene.gravity = Vec3::Zero();

@@ -23,10 +23,7 @@ std::string row(const geo::Vec3& p) {
 // The mean distance of nodes that fill a solid, or, where it is thin, side by side in a sheet. A
 // skin of longer edges would hide how the nodes move.
 double spacing_of(const geo::TriangleMesh& mesh, int nodes) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    area += 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
-  return std::max(std::cbrt(geo::signed_volume(mesh) / nodes), std::sqrt(0.5 * area / nodes));
+  return std::max(std::cbrt(geo::signed_volume(mesh) / nodes), std::sqrt(0.5 * geo::area(mesh) / nodes));
 }
 
 // Gravity is such that a fall over the model's own size takes about 0.6 s, as that of a thing that

@@ -28,6 +28,14 @@ constexpr double latest_begin = 1, latest_end = 2;
 
 }  // namespace
 
+Shown open_from_page(const OpenModel& open, ModelFile model) {
+  Shown opened = open(model);
+  if (model.tension > 1) opened.session->tighten(model.tension);
+  opened.model = {.name = std::move(model.name), .bytes = std::move(model.bytes)};
+  opened.from_page = true;
+  return opened;
+}
+
 struct Turns::Impl {
   Impl(Shown& shown, Inbox& inbox, Pages& pages, const LoopOptions& options)
       : shown_(shown), inbox_(inbox), shows_(pages), options_(options), pacer_(pacer_of(*shown.session)) {
@@ -152,11 +160,7 @@ struct Turns::Impl {
   // Shows a model in place of the present one. Throws geo::InputError, BadMessage.
   void show(ModelFile model) {
     if (!options_.open) throw BadMessage("no model can be opened here");
-    Shown opened = options_.open(model);
-    if (model.tension > 1) opened.session->tighten(model.tension);
-    opened.model = {.name = std::move(model.name), .bytes = std::move(model.bytes)};
-    opened.from_page = true;
-    shown_ = std::move(opened);
+    shown_ = open_from_page(options_.open, std::move(model));
     release_free_memory();
     begin();
     for (const ClientId page : pages_)

@@ -26,11 +26,17 @@ struct Shown {
   bool from_page = false;               ///< the model is no file here: a recording names it without a folder
 };
 
+/// Makes a run of a model. Throws geo::InputError.
+using OpenModel = std::function<Shown(const ModelFile& model)>;
+
+/// A run of a model that a page has sent or chosen, with a tight skin where the model asks for one.
+/// Throws as `open` does.
+Shown open_from_page(const OpenModel& open, ModelFile model);
+
 struct LoopOptions {
   double linger = 30;                  ///< s without a page before the loop ends; 0: never
   std::function<bool()> keep_on = {};  ///< asked several times a second; false ends the loop
-  /// Makes a run of a model. Throws geo::InputError.
-  std::function<Shown(const ModelFile& model)> open = {};
+  OpenModel open = {};                 ///< what pages may open; empty: nothing
 };
 
 enum class LoopEnd {

@@ -25,6 +25,10 @@ namespace {
 // nodes are moved and lose their edges.
 constexpr double on_face = 0.02;
 
+// Walls nearer to each other than this, in spacings, have no node between them: twice what a sheet
+// snaps by, which is the thickness of specks.
+constexpr double resolved_walls = 0.002;
+
 }  // namespace
 
 void set_original_nodes(Body& body, std::uint32_t count) {
@@ -224,11 +228,13 @@ std::vector<NodePair> insert_nodes_between_walls(NewNodes& inserted, const std::
   for (OffsetSample& s : offset_samples(corners_of(body.surface, faces), spacing_at, seed)) {
     const Side side{faces[s.face], s.side};
     if (is_in_front(body.surface, side, s.base, s.position)) continue;
-    // Two heights in turn, since nodes in one plane carry no bending. None that would be on a face.
+    // Two heights in turn, since nodes in one plane carry no bending; the middle where those would
+    // be on a face.
     const Vec3 way = way_to_next_face(body.surface, side.face, s.base, s.position) * (s.position - s.base);
     const bool is_near_base = waiting.size() % 2 == 0;
-    if (0.3 * way.norm() < on_face * s.spacing) continue;
-    s.position = s.base + (is_near_base ? 0.3 : 0.7) * way;
+    const bool has_heights = 0.3 * way.norm() >= on_face * s.spacing;
+    if (way.norm() < resolved_walls * s.spacing) continue;
+    s.position = s.base + (!has_heights ? 0.5 : is_near_base ? 0.3 : 0.7) * way;
     if (is_in_front(body.surface, side, s.base, s.position)) waiting.push_back(s);
   }
   // Only where a node sees them: so pieces stay connected. In turn, since each may be the one that

@@ -41,6 +41,10 @@ Vec3 carried(const Vec3& x, const std::array<Vec3, 3>& rest, const std::array<Ve
   return x + moved + (turned.allFinite() ? turned : Vec3(Vec3::Zero()));
 }
 
+// Farthest that untangling carries a vertex with the material around it, in node spacings: the
+// length of the shortest way that a front goes, below which nothing of a sheet is resolved.
+constexpr double carried_spacings = 0.05;
+
 class SurfaceEmbedder {
  public:
   explicit SurfaceEmbedder(const EmbeddingInput& input)
@@ -365,9 +369,13 @@ class SurfaceEmbedder {
       const auto nodes = reference_[v].valid() ? nodes_of(reference_[v]) : nodes_near(rest(v));
       return nodes.empty() ? Mat3(Mat3::Identity()) : Mat3(Mat3::Identity() + gradient_[nodes[0].index()]);
     };
-    if (!untangle({.surface = s, .rest = rest, .gradient = gradient, .fresh = fresh, .gap = in_.gap}, result_.positions,
-                  marked)
-             .empty())
+    const UntangleInput untangling{.surface = s,
+                                   .rest = rest,
+                                   .gradient = gradient,
+                                   .fresh = fresh,
+                                   .gap = in_.gap,
+                                   .reach = carried_spacings * in_.body.finest_spacing};
+    if (!untangle(untangling, result_.positions, marked).empty())
       throw GeometryError("the surface would cross itself where the crack begins to open");
   }
 

@@ -1,16 +1,18 @@
 // Projection of separation constraints, Gauss–Seidel (position-based dynamics), then a new search.
 // The axis is the difference of closest points in the material, mapped by F⁻ᵀ. Where that fails,
-// all begins again, and normals of features that separate the two there are axes, too.
+// normals of features are axes, too; then patches are carried (carried_patches.h).
 #include "contact/embedding/untangle.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "contact/detection/simplex.h"
+#include "contact/embedding/carried_patches.h"
 #include "geometry/distance.h"
 
 namespace geo {
@@ -228,7 +230,15 @@ std::vector<TrianglePair> untangle(const UntangleInput& in, std::vector<Vec3>& p
   if (left.empty()) return left;
   positions = tangle.given;
   marked = tangle.marked;
-  return untangle_along(Axes::of_distance_and_features, tangle, positions, marked);
+  std::vector<TrianglePair> still = untangle_along(Axes::of_distance_and_features, tangle, positions, marked);
+  if (still.empty()) return still;
+  const CrossedSurface crossed{
+      .in = in, .representative = tangle.representative, .given = tangle.given, .crossings = tangle.crossings};
+  std::optional<CarriedPatches> carried = carry_patches(crossed, tangle.marked);
+  if (!carried) return still;
+  positions = std::move(carried->positions);
+  marked = std::move(carried->marked);
+  return {};
 }
 
 }  // namespace geo

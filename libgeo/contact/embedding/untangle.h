@@ -15,6 +15,7 @@ struct UntangleInput {
   std::function<Mat3(std::uint32_t)> gradient;  ///< deformation gradient at a surface vertex
   const std::vector<std::uint8_t>& fresh;       ///< per triangle: embedded by Eq. 1, so its given position may cross
   double gap;                                   ///< largest wanted separation, model units
+  double reach;  ///< farthest that a vertex moves with the material around it, model units
 };
 
 /// Moves vertices until no triangle marked in `marked` crosses another, or until several rounds

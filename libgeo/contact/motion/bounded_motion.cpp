@@ -184,8 +184,7 @@ class CrossingFreeMotion {
         if (!still_.empty() || !projection.make_rigid(uncertified)) break;
         evaluations_ += projection.project(next, evaluations_left());
       }
-      mark_changed(before, next, changed);
-      for (const auto& [s, t] : uncertified) changed[s] = changed[t] = 1;  // to be tested again if unmoved, too
+      mark_changed(before, next, uncertified, changed);
       if (!update_near(start, next, changed)) break;
     }
     stats_.in_zones = std::max(stats_.in_zones, projection.in_zones());
@@ -223,7 +222,7 @@ class CrossingFreeMotion {
       if (moves_as_one) break;
       const std::vector<Vec3> before = next;
       fallback->apply(next);
-      mark_changed(before, next, changed);
+      mark_changed(before, next, uncertified, changed);
       moves_as_one = !update_near(start, next, changed);
       if (moves_as_one) break;
     }
@@ -234,15 +233,17 @@ class CrossingFreeMotion {
     return !fallback || fallback->share() == 1 ? Outcome::fallback : Outcome::scaled_down;
   }
 
-  // Marks triangles with a vertex that has moved.
+  // Marks triangles whose pairs are to be tested again: with a vertex that has moved, and those of
+  // pairs that were not certified, though nothing has moved them.
   void mark_changed(const std::vector<Vec3>& before, const std::vector<Vec3>& next,
-                    std::vector<std::uint8_t>& changed) const {
+                    std::span<const BroadPhase::Pair> uncertified, std::vector<std::uint8_t>& changed) const {
     std::vector<std::uint8_t> moved(next.size(), 0);
     for (const auto v : surface_.vertices) moved[v] = next[v] != before[v];
     for (std::size_t t = 0; t < changed.size(); ++t) {
       const auto& [a, b, c] = surface_.triangles[t];
       changed[t] = moved[a] | moved[b] | moved[c];
     }
+    for (const auto& [s, t] : uncertified) changed[s] = changed[t] = 1;
   }
 
   // Last resort: the affine motion alone, which crosses nothing but for rounding; if rounding makes

@@ -18,8 +18,12 @@ struct Tangle {
   std::vector<TrianglePair> untangle(double gap, const Mat3& gradient = Mat3::Identity()) {
     surface.site.resize(rest.size());
     for (std::uint32_t v = 0; v < rest.size(); ++v) surface.site[v] = v;
-    const UntangleInput input{surface, [&](std::uint32_t v) { return rest[v]; },
-                              [&](std::uint32_t) { return gradient; }, fresh, gap};
+    const UntangleInput input{.surface = surface,
+                              .rest = [&](std::uint32_t v) { return rest[v]; },
+                              .gradient = [&](std::uint32_t) { return gradient; },
+                              .fresh = fresh,
+                              .gap = gap,
+                              .reach = 0};
     return geo::untangle(input, positions, marked);
   }
 };

@@ -165,7 +165,7 @@ ContactStats SelfContact::move_surface(const std::vector<Vec3>& u, const Contact
   for (std::size_t v = 0; step && v < step->still.size(); ++v)
     if (step->still[v]) targets[v] = positions()[v];
   std::vector<Vec3> opened = positions();
-  stats.opened = open_sheets(surface(), surface_.fans(), surface_.coincidence().coincident, targets, gap(),
+  stats.opened = open_sheets(surface(), surface_.fans(), surface_.coincidence(), targets, gap(),
                              options_.opening * surface().edge, opened);
   if (stats.opened > 0) surface_.move_to(std::move(opened));
   const Coincidence& coincidence = surface_.coincidence();

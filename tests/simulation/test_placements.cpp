@@ -18,7 +18,7 @@
 #include "kerf/files.h"
 #include "kerf/pieces.h"
 #include "kerf/simulation.h"
-#include "simulation/mapped_places.h"
+#include "simulation/edge_front.h"
 #include "simulation/placed_scene.h"
 
 using namespace geo;
@@ -184,16 +184,15 @@ bool is_between(const CutScene& cut, const Outcome& o, const std::vector<Outcome
 }
 
 // Whether the place of a scene decides no more than displacements of its blades do, of two sizes:
-// far below all lengths of the scene; and as the scheme's own error, of the body's motion or of the
-// places of sheets, which snap to vertices and edges. A blade that grazes the wall of an earlier
-// cut, which has sagged, may shave it or not, here or there: the outcome is that of a trial, or
-// between those of all.
+// far below all lengths of the scene; and as the scheme's own error, of the body's motion or of
+// fronts, which resolve a twentieth of a spacing. A blade that grazes the wall of an earlier cut,
+// which has sagged, may shave it or not, here or there: the outcome is that of a trial, or between
+// those of all.
 bool is_decided_by_errors(const CutScene& cut, const NodeSet& nodes, const Outcome& here, const Outcome& there) {
-  constexpr int trials = 12;
+  constexpr int trials = 24;
   constexpr double least = 1e-10;  // m; models are about a metre large
-  // Energies are squares of motions.
-  const double most = std::max(snap_spacings * *std::min_element(nodes.spacing.begin(), nodes.spacing.end()),
-                               0.5 * (same_energy - 1) * here.sag);
+  const double resolved = resolved_by_front * *std::min_element(nodes.spacing.begin(), nodes.spacing.end());
+  const double most = std::max(resolved, 0.5 * (same_energy - 1) * here.sag);  // energies are squares of motions
   Random random(1);
   std::vector<Outcome> all{here};
   for (int k = 0; k < trials; ++k) {

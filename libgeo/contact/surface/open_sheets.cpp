@@ -1,9 +1,11 @@
-// Trial moves of gap/2 · 4^(−k), k = 0 … 4, of all opening vertices at once. Vertices whose
-// triangles cross (exact test) close again and are tried one by one (docs/decisions/079).
+// Trial moves of gap/2 · 4^(−k), k = 0 … 4, of all opening vertices at once: into the material, then
+// towards the targets. Vertices whose triangles cross (exact test) close again and are tried one by
+// one (docs/decisions/079, 117).
 #include "contact/surface/open_sheets.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contact/detection/find_crossings.h"
 #include "geometry/aabb_tree.h"
@@ -13,50 +15,86 @@ namespace {
 
 using Representatives = std::vector<std::uint32_t>;
 
-// Representatives of which two copies a, b have targets that come apart: with d = to_a − to_b and n
-// the normalised difference of unit normals, n · d > opening or |d − (n · d) n| > 3 opening.
-Representatives find_opening(const CoincidentVertices& coincident, const std::vector<Vec3>& normals,
+// Normals of a closed sheet's vertices.
+struct SheetNormals {
+  std::vector<Vec3> all;         // of all triangles at a vertex
+  std::vector<Vec3> coincident;  // of those that coincide with the other side; zero: there are none
+};
+
+// Whether the targets of two copies come apart: with d = to_a − to_b and n the normalised difference
+// of unit normals, n · d > opening or |d − (n · d) n| > 3 opening. Where the sheet is open all around
+// them, in any direction: they are tips of spikes, whose normals tell nothing, and hold two bodies
+// together that touch nowhere else.
+bool come_apart(const SheetNormals& normals, std::uint32_t a, std::uint32_t b, const Vec3& apart, double opening) {
+  if (normals.coincident[a].isZero(0) && normals.coincident[b].isZero(0)) return apart.norm() > opening;
+  const Vec3 n = (normals.all[b].normalized() - normals.all[a].normalized()).normalized();
+  const double along = n.dot(apart);
+  return along > opening || (apart - along * n).norm() > 3 * opening;
+}
+
+// Representatives of which two copies have targets that come apart.
+Representatives find_opening(const CoincidentVertices& coincident, const SheetNormals& normals,
                              const std::vector<Vec3>& to, double opening) {
   Representatives result;
-  for (std::uint32_t v = 0; v < coincident.size(); ++v)
-    for (std::size_t i = 0; i < coincident[v].size(); ++i)
-      for (std::size_t j = i + 1; j < coincident[v].size(); ++j) {
-        const auto a = coincident[v][i], b = coincident[v][j];
-        const Vec3 n = (normals[b].normalized() - normals[a].normalized()).normalized(), apart = to[a] - to[b];
-        const double along = n.dot(apart);
-        if ((along > opening || (apart - along * n).norm() > 3 * opening) && (result.empty() || result.back() != v))
-          result.push_back(v);
-      }
+  for (std::uint32_t v = 0; v < coincident.size(); ++v) {
+    const auto& copies = coincident[v];
+    bool opens = false;
+    for (std::size_t i = 0; i < copies.size() && !opens; ++i)
+      for (std::size_t j = i + 1; j < copies.size() && !opens; ++j)
+        opens = come_apart(normals, copies[i], copies[j], to[copies[i]] - to[copies[j]], opening);
+    if (opens) result.push_back(v);
+  }
   return result;
 }
 
 class SheetOpener {
  public:
-  SheetOpener(const ContactSurface& surface, const CoincidentVertices& coincident, const std::vector<Vec3>& normals,
-              double gap, std::vector<Vec3>& positions)
+  SheetOpener(const ContactSurface& surface, const CoincidentVertices& coincident, SheetNormals normals,
+              const std::vector<Vec3>& to, double gap, std::vector<Vec3>& positions)
       : surface_(surface),
         coincident_(coincident),
-        normals_(normals),
+        normals_(std::move(normals.all)),
+        to_(to),
         gap_(gap),
         closed_(positions),
-        positions_(positions) {}
+        positions_(positions),
+        inward_(std::move(normals.coincident)) {
+    for (std::size_t v = 0; v < inward_.size(); ++v)
+      if (inward_[v].isZero(0)) inward_[v] = normals_[v];
+  }
 
   // Returns the number of representatives that remain closed.
   std::size_t run(const Representatives& opening) {
     find_pairs(opening);
-    inward_ = coincident_side_normals(surface_, coincident_representatives(surface_.site, positions_), positions_);
-    for (std::size_t v = 0; v < inward_.size(); ++v)
-      if (inward_[v].isZero(0)) inward_[v] = normals_[v];
     Representatives closed = opening;
-    // Smaller moves for vertices whose triangles would cross: five lengths, each along two normals.
-    // Each length is a quarter of the one before, so that the last is gap / 512: what does not open
-    // by that has no space, and stays closed until the next step.
-    constexpr int max_trials = 10;
-    for (int trial = 0; !closed.empty() && trial < max_trials; ++trial) closed = open_at_once(closed, trial);
+    for (int trial = 0; !closed.empty() && trial < trials_of_ways * ways_of_normals; ++trial)
+      closed = open_at_once(closed, trial / ways_of_normals, trial % ways_of_normals == 0 ? Way::inward : Way::normal);
+    for (int trial = 0; !closed.empty() && trial < trials_of_ways; ++trial)
+      closed = open_at_once(closed, trial, Way::to_target);
     return open_one_by_one(closed);
   }
 
  private:
+  // Smaller moves for vertices whose triangles would cross: five lengths, each a quarter of the one
+  // before, so that the last is gap / 512. What does not open by that has no space, and stays
+  // closed until the next step.
+  static constexpr int trials_of_ways = 5;
+  static constexpr int ways_of_normals = 2;
+
+  // Where a copy goes: against the normal of the coincident triangles around it; against that of
+  // all its triangles; or to its target. Where all around it has opened and slid on, a closed copy
+  // is the tip of a spike, its normals are those of the spike's flanks, and the way back is to the
+  // target.
+  enum class Way { inward, normal, to_target };
+
+  // The motion of copy c of a closed vertex, in a trial.
+  Vec3 move_of(std::uint32_t c, Way way, int trial) const {
+    const double step = std::ldexp(0.5 * gap_, -2 * trial);
+    if (way != Way::to_target) return -step * (way == Way::inward ? inward_ : normals_)[c].normalized();
+    const Vec3 lag = to_[c] - closed_[c];
+    return std::min(step, lag.norm()) * lag.normalized();
+  }
+
   // Pairs of triangles that may meet while opening vertices move by at most half a gap.
   void find_pairs(const Representatives& opening) {
     std::vector<std::uint8_t> moving(positions_.size(), 0);
@@ -79,16 +117,14 @@ class SheetOpener {
   }
 
   // Moves all given vertices, then closes those whose triangles cross, until nothing crosses.
-  // Trials alternate between the two normals, with ever smaller moves. Returns the vertices that
-  // were closed.
-  Representatives open_at_once(const Representatives& opening, int trial) {
-    const double step = std::ldexp(0.5 * gap_, -2 * (trial / 2));
+  // Returns the vertices that were closed.
+  Representatives open_at_once(const Representatives& opening, int trial, Way way) {
     Representatives refused;
     std::vector<std::uint8_t> moved(positions_.size(), 0), marked(surface_.triangles.size(), 0),
         crosses(positions_.size(), 0);
     for (const auto v : opening)
       for (const auto c : coincident_[v]) {
-        positions_[c] -= step * (trial % 2 == 0 ? inward_[c] : normals_[c]).normalized();
+        positions_[c] += move_of(c, way, trial);
         moved[c] = 1;
       }
     for (;;) {
@@ -119,22 +155,26 @@ class SheetOpener {
   // Opens vertices one after another, since others may have been in the way. Tries moves of both
   // copies and of all but the first. Returns the number of vertices that stay closed.
   std::size_t open_one_by_one(Representatives closed) {
-    constexpr int max_trials = 20;  // five lengths, two normals, both copies or all but the first
     auto representative = coincident_representatives(surface_.site, positions_);
     auto pairs_of = pairs_at(closed);
     std::size_t next = 0;
     return std::erase_if(closed, [&](auto v) {
       auto& pairs = pairs_of[next++];
-      for (int trial = 0; trial < max_trials; ++trial) {
-        const double step = std::ldexp(0.5 * gap_, -2 * (trial / 4));
-        for (const auto c : coincident_[v]) {
-          const std::vector<Vec3>& along = trial % 4 < 2 ? inward_ : normals_;
-          positions_[c] =
-              trial % 2 == 1 && c == coincident_[v][0] ? closed_[v] : Vec3(closed_[v] - step * along[c].normalized());
-          representative[c] = c;
+      const auto opens = [&](int trial, Way way) {
+        for (const bool all : {true, false}) {
+          for (const auto c : coincident_[v]) {
+            const bool moves = all || c != coincident_[v][0];
+            positions_[c] = moves ? Vec3(closed_[v] + move_of(c, way, trial)) : closed_[v];
+            representative[c] = c;
+          }
+          if (!any_crosses(pairs, representative)) return true;
         }
-        if (!any_crosses(pairs, representative)) return false;
-      }
+        return false;
+      };
+      for (int trial = 0; trial < trials_of_ways; ++trial)
+        if (opens(trial, Way::inward) || opens(trial, Way::normal)) return false;
+      for (int trial = 0; trial < trials_of_ways; ++trial)
+        if (opens(trial, Way::to_target)) return false;
       for (const auto c : coincident_[v]) {
         positions_[c] = closed_[v];
         representative[c] = v;
@@ -175,7 +215,8 @@ class SheetOpener {
 
   const ContactSurface& surface_;
   const CoincidentVertices& coincident_;
-  const std::vector<Vec3>& normals_;
+  const std::vector<Vec3> normals_;
+  const std::vector<Vec3>& to_;
   double gap_;
   const std::vector<Vec3> closed_;  // positions before
   std::vector<Vec3>& positions_;
@@ -185,12 +226,14 @@ class SheetOpener {
 
 }  // namespace
 
-std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const CoincidentVertices& coincident,
+std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const Coincidence& coincidence,
                         const std::vector<Vec3>& to, double gap, double opening, std::vector<Vec3>& positions) {
-  const std::vector<Vec3> normals = vertex_normals(surface, fans, coincident, positions);
+  const auto& [representative, coincident] = coincidence;
+  SheetNormals normals{.all = vertex_normals(surface, fans, coincident, positions),
+                       .coincident = coincident_side_normals(surface, representative, positions)};
   const Representatives candidates = find_opening(coincident, normals, to, opening);
   if (candidates.empty()) return 0;
-  return candidates.size() - SheetOpener(surface, coincident, normals, gap, positions).run(candidates);
+  return candidates.size() - SheetOpener(surface, coincident, std::move(normals), to, gap, positions).run(candidates);
 }
 
 }  // namespace geo

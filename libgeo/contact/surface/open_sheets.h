@@ -1,17 +1,18 @@
 // Opens closed sheets: separates coincident vertices whose targets come apart.
 #pragma once
 
-#include "contact/surface/contact_surface.h"
+#include "contact/surface/moving_surface.h"
 
 namespace geo {
 
 /// A vertex opens if the targets `to` of two of its coincident copies are more than `opening` apart
-/// along their normals, or more than 3 · `opening` across them. Each copy then
-/// moves by at most half a gap into its own material: against the normal of the coincident
-/// triangles around it, or against the normal of all its triangles. Copies whose triangles would
-/// cross others stay coincident. `fans`: of the surface. Lengths in model units. Changes
-/// `positions` and returns the number of representatives that were opened.
-std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const CoincidentVertices& coincident,
+/// along their normals, or more than 3 · `opening` across them; where no triangles coincide around
+/// it, in any direction. Each copy then moves by at most half a gap: against the normal of the
+/// coincident triangles around it, against the normal of all its triangles, or to its target.
+/// Copies whose triangles would cross others stay coincident. `fans`: of the surface; `coincidence`:
+/// at `positions`. Lengths in model units. Changes `positions` and returns the number of
+/// representatives that were opened.
+std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const Coincidence& coincidence,
                         const std::vector<Vec3>& to, double gap, double opening, std::vector<Vec3>& positions);
 
 }  // namespace geo

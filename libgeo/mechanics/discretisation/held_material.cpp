@@ -22,9 +22,6 @@ constexpr double width = 0.55;
 // Least distance of the fourth anchor from the plane of the others, in support radii: coordinates
 // near the box stay below about twenty.
 constexpr double least_height = 0.05;
-// Sum of the absolute coordinates of a point in a box, four of up to about twenty. It is larger
-// where a crack has moved an anchor into the plane of the others.
-constexpr double most_weights = 80;
 
 bool holds(const HeldBox& box, const Vec3& x) {
   return (x.array() >= box.lo.array()).all() && (x.array() <= box.hi.array()).all();
@@ -150,21 +147,17 @@ std::uint32_t HeldMaterial::box_holding(const Vec3& x) const {
   return box == boxes_.end() ? no_index : static_cast<std::uint32_t>(box - boxes_.begin());
 }
 
-std::optional<std::array<NodeWeight, 4>> HeldMaterial::weights_in_box(const Vec3& x,
-                                                                      const std::vector<Vec3>& position) const {
+std::optional<std::uint32_t> HeldMaterial::rigid_box_at(const Vec3& x) const {
   const std::uint32_t box = box_holding(x);
-  if (box == no_index) return {};
-  // Components move alike in a box: any of its anchors will do.
-  const auto anchors = std::find_if(anchors_.begin(), anchors_.end(), [&](const Anchors& a) { return a.box == box; });
-  if (anchors == anchors_.end()) return {};
-  // Not with the coordinates of the anchors: a crack may have moved a node since.
-  Eigen::Matrix4d corners;
-  for (Eigen::Index a = 0; a < 4; ++a) corners.col(a) << 1, position[anchors->node[static_cast<std::size_t>(a)]];
-  const Eigen::Vector4d weight = corners.partialPivLu().solve(Eigen::Vector4d(1, x[0], x[1], x[2]));
-  if (!(weight.lpNorm<1>() < most_weights)) return {};
-  std::array<NodeWeight, 4> weights;
-  for (std::size_t a = 0; a < 4; ++a) weights[a] = {anchors->node[a], weight[static_cast<Eigen::Index>(a)]};
-  return weights;
+  if (box == no_index || !boxes_[box].rigid) return {};
+  return box;
+}
+
+std::vector<std::uint32_t> HeldMaterial::nodes_in(std::uint32_t box) const {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t i = 0; i < box_of_node_.size(); ++i)
+    if (box_of_node_[i] == box) nodes.push_back(i);
+  return nodes;
 }
 
 bool HeldMaterial::set_boxes(std::span<const HeldBox> boxes) {

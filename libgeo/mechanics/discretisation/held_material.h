@@ -10,7 +10,6 @@
 
 #include "kerf/body.h"
 #include "kerf/material.h"
-#include "kerf/potential.h"
 #include "mechanics/discretisation/material_points.h"
 
 namespace geo {
@@ -27,10 +26,10 @@ class HeldMaterial {
   bool set_boxes(std::span<const HeldBox> boxes);
   /// Whether apply() may replace the shape gradients of a point at x. `reach`: reach_of(nodes).
   bool is_near(const Vec3& x, double reach) const;
-  /// Weights of four nodes with which a field that is affine in each box, as displacements and
-  /// velocities are, has its value at x; none where x is in no box that moves like a rigid body.
-  /// `position`: of the nodes.
-  std::optional<std::array<NodeWeight, 4>> weights_in_box(const Vec3& x, const std::vector<Vec3>& position) const;
+  /// The first box that holds x, if it moves like a rigid body.
+  std::optional<std::uint32_t> rigid_box_at(const Vec3& x) const;
+  /// The nodes in a box, as of the last apply(), ascending.
+  std::vector<std::uint32_t> nodes_in(std::uint32_t box) const;
   /// Farthest from a box that a point is replaced, model units: supports of points may be widened.
   static double reach_of(const NodeSet& nodes);
   /// Puts back the shape gradients of the plain basis. Keeps results of apply() for the next one.

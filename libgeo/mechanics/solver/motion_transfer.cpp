@@ -1,8 +1,11 @@
 // SolidDiscretisation::update_nodes() of solid_discretisation.h. Transfer of motion over a cut: to
 // new and moved nodes, with the momenta of each component of the graph.
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <utility>
 
+#include "geometry/nearest_rotation.h"
 #include "geometry/principal_inertia.h"
 #include "kerf/parallel.h"
 #include "mechanics/discretisation/kernel.h"
@@ -53,6 +56,16 @@ RigidVelocity correction(const Momenta& before, const Momenta& after) {
   const PrincipalInertia inertia(after.inertia - after.mass * (c.squaredNorm() * Mat3::Identity() - c * c.transpose()));
   const Vec3 spin = inertia.angular_velocity(angular, rounding * inertia.moments[2]);
   return {c, linear / after.mass, inertia.axes * spin};
+}
+
+// The rigid velocity of a cloud of points. About an axis on which all of them lie it is 0.
+RigidVelocity velocity_of(const Momenta& cloud, double rounding) {
+  const Vec3 centre = cloud.moment / cloud.mass;
+  const Vec3 angular = cloud.angular - centre.cross(cloud.linear);
+  const PrincipalInertia inertia(cloud.inertia -
+                                 cloud.mass * (centre.squaredNorm() * Mat3::Identity() - centre * centre.transpose()));
+  return {centre, cloud.linear / cloud.mass,
+          inertia.axes * inertia.angular_velocity(angular, rounding * inertia.moments[2])};
 }
 
 // A node that has moved: where it was, and its velocity.
@@ -127,24 +140,75 @@ std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const No
   return moved;
 }
 
-// A node in a held box, and the displacement and velocity of the box there.
+// The rigid motion of a held box, and its velocity.
 struct BoxMotion {
+  Vec3 centre, translation;
+  Mat3 rotation;  // about the centre
+  RigidVelocity velocity;
+
+  Vec3 displacement(const Vec3& x) const { return translation + (rotation - Mat3::Identity()) * (x - centre); }
+};
+
+// That of the nodes in a box, by Kabsch (1976), however few they are and though they lie in a plane
+// or on a line: it is known, and does not need four nodes that span space. Empty without nodes.
+std::optional<BoxMotion> motion_of_box(const SolidDiscretisation& before, std::span<const std::uint32_t> nodes,
+                                       const State& state) {
+  if (nodes.empty()) return {};
+  // Of the largest spread, or moment of inertia: below it, nodes do not tell of a rotation.
+  constexpr double rounding = 1e-12;
+  BoxMotion motion{.centre = Vec3::Zero(),
+                   .translation = Vec3::Zero(),
+                   .rotation = Mat3::Identity(),
+                   .velocity = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
+  const double share = 1.0 / double(nodes.size());
+  Momenta momenta;
+  for (const std::uint32_t i : nodes) {
+    motion.centre += share * before.position[i];
+    motion.translation += share * state.displacement[i];
+    momenta.add(1, before.position[i] + state.displacement[i], state.velocity[i]);
+  }
+  motion.velocity = velocity_of(momenta, rounding);
+  const Vec3& first = state.displacement[nodes[0]];
+  if (std::all_of(nodes.begin(), nodes.end(), [&](auto i) { return state.displacement[i] == first; })) {
+    motion.translation = first;
+    return motion;
+  }
+  Mat3 cross = Mat3::Zero();
+  double spread = 0;
+  for (const std::uint32_t i : nodes) {
+    const Vec3 arm = before.position[i] - motion.centre;
+    cross += (arm + state.displacement[i] - motion.translation) * arm.transpose();
+    spread += arm.squaredNorm();
+  }
+  // Where nodes leave an axis of rotation open, the least rotation.
+  motion.rotation = nearest_rotation(cross + rounding * spread * Mat3::Identity()).rotation;
+  return motion;
+}
+
+// A node in a held box, and the displacement and velocity of the box there.
+struct HeldNode {
   std::size_t node;
   Vec3 displacement, velocity;
 };
 
-// The motions of new and moved nodes in held boxes: they move as the boxes do. Else the motion of
-// material that is held would depend on which of its nodes anchor it.
-std::vector<BoxMotion> motions_in_boxes(const SolidDiscretisation& before, const NodeSet& nodes,
-                                        std::span<const NodeId> updated, const State& state) {
-  std::vector<BoxMotion> motions;
+// The motions of new and moved nodes in held boxes: they move as the boxes do. Else held material
+// would be strained between them and the nodes that it had, for as long as it is held.
+std::vector<HeldNode> motions_in_boxes(const SolidDiscretisation& before, const NodeSet& nodes,
+                                       std::span<const NodeId> updated, const State& state) {
+  std::map<std::uint32_t, std::optional<BoxMotion>> boxes;
+  std::vector<HeldNode> motions;
   for (const NodeId id : updated) {
     const std::size_t i = id.index();
     if (i < before.position.size() && before.position[i] == nodes.position[i]) continue;
-    if (const auto weights = before.held.weights_in_box(nodes.position[i], before.position))
-      motions.push_back({.node = i,
-                         .displacement = weighted_sum(*weights, state.displacement),
-                         .velocity = weighted_sum(*weights, state.velocity)});
+    const Vec3& x = nodes.position[i];
+    const std::optional<std::uint32_t> box = before.held.rigid_box_at(x);
+    if (!box) continue;
+    const auto [known, is_new] = boxes.try_emplace(*box);
+    if (is_new) known->second = motion_of_box(before, before.held.nodes_in(*box), state);
+    if (!known->second) continue;
+    const BoxMotion& motion = *known->second;
+    const Vec3 displacement = motion.displacement(x);
+    motions.push_back({.node = i, .displacement = displacement, .velocity = motion.velocity.at(x + displacement)});
   }
   return motions;
 }
@@ -233,9 +297,9 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
   const std::vector<double> mass_before = mass;
   const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
   if (!state.displacement.empty()) {
-    const std::vector<BoxMotion> held_nodes = motions_in_boxes(*this, nodes, updated, state);
+    const std::vector<HeldNode> held_nodes = motions_in_boxes(*this, nodes, updated, state);
     moved = extend_motion(*this, nodes, old_count, donors, updated, state);
-    for (const BoxMotion& m : held_nodes) {
+    for (const HeldNode& m : held_nodes) {
       state.displacement[m.node] = m.displacement;
       state.velocity[m.node] = m.velocity;
     }

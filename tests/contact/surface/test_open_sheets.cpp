@@ -1,6 +1,9 @@
 // A closed two-sided sheet opens where its targets come apart.
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <numbers>
+
 #include "contact/detection/find_crossings.h"
 #include "contact/surface/open_sheets.h"
 
@@ -46,8 +49,7 @@ struct ClosedSheet {
   }
   std::size_t open(const std::vector<Vec3>& to, double gap, double opening) {
     const VertexFans fans(surface.triangles, positions.size());
-    const CoincidentVertices coincident(coincident_representatives(surface.site, positions));
-    return open_sheets(surface, fans, coincident, to, gap, opening, positions);
+    return open_sheets(surface, fans, Coincidence(surface.site, positions), to, gap, opening, positions);
   }
   std::size_t crossings() const {
     return find_crossings(surface.triangles, positions, coincident_representatives(surface.site, positions), true)
@@ -85,4 +87,32 @@ TEST_CASE("vertices stay closed if their targets overlap or hardly differ", "[op
   for (const auto v : sheet.upper) to[v].x() += 4 * opening;
   CHECK(sheet.open(to, gap, opening) == 9);
   CHECK(sheet.crossings() == 0);
+}
+
+// The last vertex of a sheet that has opened and slid on: both copies are tips of spikes, whose
+// normals tell where the other body is as little as those of a needle. In all directions.
+TEST_CASE("a vertex opens where the sheet is open all around it", "[open-sheets]") {
+  constexpr double gap = 1e-3, opening = 1e-2;
+  for (int k = 0; k < 12; ++k) {
+    INFO("direction " << k);
+    const double angle = k * std::numbers::pi / 6;
+    const Vec3 by(0.4 * std::cos(angle), 0.4 * std::sin(angle), 0.05);
+    ClosedSheet sheet(6);
+    const std::uint32_t middle = 3 * 7 + 3;
+    std::uint32_t tip = 0;
+    for (const auto v : sheet.upper) {
+      if (sheet.surface.site[v] == middle)
+        tip = v;
+      else
+        sheet.positions[v] += by;
+    }
+    REQUIRE(sheet.crossings() == 0);
+    std::vector<Vec3> to = sheet.positions;
+    const Vec3 across = opening * Vec3(by.x(), by.y(), 0).normalized();
+    to[tip] += across;
+    to[middle] -= across;
+    CHECK(sheet.open(to, gap, opening) == 1);
+    CHECK(sheet.crossings() == 0);
+    CHECK(sheet.positions[tip] != sheet.positions[middle]);
+  }
 }

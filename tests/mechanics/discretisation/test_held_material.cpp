@@ -3,6 +3,7 @@
 #include "mechanics/discretisation/held_material.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -189,6 +190,45 @@ TEST_CASE("nodes that are new in a held box move with it", "[held]") {
     });
   }
   CHECK(inside > 100);
+}
+
+// A box that holds a layer of nodes, or a node: they do not span space, and the material near them
+// is not held by its own basis. What comes new moves as they do.
+TEST_CASE("nodes that are new in a held box with few nodes move with it", "[held]") {
+  const Seeds all = seeds(40);
+  std::size_t inside = 0;
+  for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Body body = block_body({1.6, 0.8, 0.7}, 0.15);
+    Solid solid(body, soft());
+    // As far below the top as there is one node, up to four, in the box.
+    std::vector<double> heights;
+    for (const Vec3& x : body.nodes.position) heights.push_back(x.z());
+    std::sort(heights.rbegin(), heights.rend());
+    const std::size_t count = 1 + random.below(4);
+    const std::vector<HeldBox> boxes{{{-1, -1, heights[count - 1]}, {2, 2, 2}, true}};
+    solid.hold(body, boxes);
+    const bool is_still = random.below(2) == 0;
+    const Vec3 by = is_still ? Vec3(Vec3::Zero()) : Vec3(random.direction());
+    const Vec3 velocity = is_still ? Vec3(Vec3::Zero()) : Vec3(random.direction());
+    State state{random_field(body.nodes.size(), 0.1, random), random_field(body.nodes.size(), 0.1, random)};
+    for (std::size_t i = 0; i < body.nodes.size(); ++i)
+      if (holds(boxes[0], body.nodes.position[i])) {
+        state.displacement[i] = by;
+        state.velocity[i] = velocity;
+      }
+    const std::size_t before = body.nodes.size();
+    const Vec3 a(-0.2, random.uniform(0.2, 0.6), 0.9), b(1.8, random.uniform(0.2, 0.6), 0.9), step(0, 0, -0.25);
+    auto front = begin_front(blade_at(a, b, step, 0, 3), false, 1);
+    for (int k = 1; k <= 4; ++k) solid.update_nodes(body, split(body, front, blade_at(a, b, step, k, 3)), state);
+    for (std::size_t i = before; i < body.nodes.size(); ++i)
+      if (holds(boxes[0], body.nodes.position[i])) {
+        ++inside;
+        CHECK((state.displacement[i] - by).norm() < (is_still ? 1e-300 : 1e-12));
+      }
+  }
+  CHECK(inside > 20);
 }
 
 TEST_CASE("material that is cut off beside a held box is free", "[held]") {

@@ -301,7 +301,7 @@ TEST_CASE("a stroke across two strokes of one plane cuts all", "[placements]") {
 }
 
 // The second stroke takes a flap off, a twenty-fifth of a spacing thick and as wide as the ball. It
-// has nodes where its walls are too near for two heights, too: two nodes at one end do not carry it.
+// has nodes where its walls are too near for two heights, too: two at one end do not carry it.
 TEST_CASE("a flap that is thinner than a twentieth of a spacing gains no energy", "[placements]") {
   const CutScene cut = random_cut_scene(11700000114 / 8);
   const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;

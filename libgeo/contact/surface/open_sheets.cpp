@@ -1,5 +1,5 @@
-// Trial moves of gap/2 · 4^(−k), k = 0 … 4, of all opening vertices at once: into the material, then
-// towards the targets. Vertices whose triangles cross (exact test) close again and are tried one by
+// Trial moves of gap/2 · 4^(−k), k = 0 … 4, of all opening vertices at once: into the material,
+// then to the targets. Vertices whose triangles cross (exact test) close again and are tried one by
 // one (docs/decisions/079, 117).
 #include "contact/surface/open_sheets.h"
 
@@ -21,10 +21,10 @@ struct SheetNormals {
   std::vector<Vec3> coincident;  // of those that coincide with the other side; zero: there are none
 };
 
-// Whether the targets of two copies come apart: with d = to_a − to_b and n the normalised difference
-// of unit normals, n · d > opening or |d − (n · d) n| > 3 opening. Where the sheet is open all around
-// them, in any direction: they are tips of spikes, whose normals tell nothing, and hold two bodies
-// together that touch nowhere else.
+// Whether the targets of two copies come apart: with d = to_a − to_b and n the normalised
+// difference of unit normals, n · d > opening or |d − (n · d) n| > 3 opening. Where the sheet is
+// open all around them, in any direction: they are tips of spikes, whose normals tell nothing, and
+// hold two bodies together that touch nowhere else.
 bool come_apart(const SheetNormals& normals, std::uint32_t a, std::uint32_t b, const Vec3& apart, double opening) {
   if (normals.coincident[a].isZero(0) && normals.coincident[b].isZero(0)) return apart.norm() > opening;
   const Vec3 n = (normals.all[b].normalized() - normals.all[a].normalized()).normalized();
@@ -76,8 +76,8 @@ class SheetOpener {
 
  private:
   // Smaller moves for vertices whose triangles would cross: five lengths, each a quarter of the one
-  // before, so that the last is gap / 512. What does not open by that has no space, and stays
-  // closed until the next step.
+  // before, so that the last is gap / 512. Vertices that do not open by that have no space, and
+  // stay closed until the next step.
   static constexpr int trials_of_ways = 5;
   static constexpr int ways_of_normals = 2;
 

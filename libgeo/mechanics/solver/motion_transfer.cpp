@@ -154,7 +154,8 @@ struct BoxMotion {
 std::optional<BoxMotion> motion_of_box(const SolidDiscretisation& before, std::span<const std::uint32_t> nodes,
                                        const State& state) {
   if (nodes.empty()) return {};
-  // Of the largest spread, or moment of inertia: below it, nodes do not tell of a rotation.
+  // A share of the spread, and of the largest moment of inertia, below which nodes do not tell of a
+  // rotation.
   constexpr double rounding = 1e-12;
   BoxMotion motion{.centre = Vec3::Zero(),
                    .translation = Vec3::Zero(),

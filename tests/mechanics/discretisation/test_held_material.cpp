@@ -193,7 +193,7 @@ TEST_CASE("nodes that are new in a held box move with it", "[held]") {
 }
 
 // A box that holds a layer of nodes, or a node: they do not span space, and the material near them
-// is not held by its own basis. What comes new moves as they do.
+// is not held by its own basis. New nodes move as they do.
 TEST_CASE("nodes that are new in a held box with few nodes move with it", "[held]") {
   const Seeds all = seeds(40);
   std::size_t inside = 0;

@@ -42,6 +42,7 @@ struct Outcome {
   double sag = 0;        // the largest motion of a node in these frames
   std::size_t work = 0;  // Newton steps and triangles cut
   double gain = 0;       // the largest rise of all energy, over the largest that moves or strains
+  double fall = 0;       // energy of weight that pieces have given at the end, over modulus and volume
 
   // The largest energy of the first frames.
   double energy(std::size_t frames) const {
@@ -94,6 +95,7 @@ Outcome run(const CutScene& cut, Simulation sim) {
   }
   outcome.refused = total.refused;
   outcome.gain = gain.share();
+  outcome.fall = -total.weight;
   outcome.work = total.newton + total.split.crack.triangles_cut;
   CHECK(check_complex(sim.body().surface, SelfIntersections::find).good());
   const Pieces pieces = find_pieces(sim.body().surface);
@@ -103,6 +105,7 @@ Outcome run(const CutScene& cut, Simulation sim) {
   std::sort(outcome.volumes.rbegin(), outcome.volumes.rend());
   outcome.crumbs = total.sheet.crumbs;
   for (double& energy : outcome.energies) energy /= cut.scene.material.young * all;
+  outcome.fall /= cut.scene.material.young * all;
   return outcome;
 }
 
@@ -212,7 +215,8 @@ std::string told(const Outcome& o) {
   }
   return text + "), " + std::to_string(o.crumbs) + " crumbs, " + std::to_string(o.crossings) + " crossings, " +
          std::to_string(o.refused) + " refused, energy " + std::to_string(1e6 * o.energy(o.energies.size())) +
-         "e-6, work " + std::to_string(o.work) + ", gain " + std::to_string(o.gain);
+         "e-6, work " + std::to_string(o.work) + ", gain " + std::to_string(o.gain) + ", fall " +
+         std::to_string(1e6 * o.fall) + "e-6";
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ std::string statistics_text(const Session& session, const Pace& pace) {
               {"gravity", point(session.gravity())},
               {"friction", frictions_of(now).second},
               {"friction_least", frictions_of(now).first},
-              {"damping", now.material.damping},
+              {"damping", session.damping()},
               {"tension", session.original().prestretch.skin},
               {"resistance", session.hands().edges().resistance},
               {"dullness", session.hands().edges().friction}}}};

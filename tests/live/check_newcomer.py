@@ -417,11 +417,30 @@ def keys():
         hand.wait(f"window.innerWidth === {width}")
         below = hand.run("[$('canvas').getBoundingClientRect().bottom, $('tools').getBoundingClientRect().top, $('tools').scrollWidth - $('tools').clientWidth]")
         check(f"keys: at {width} pixels the tools are over the picture: {below}", below[0] <= below[1] + 0.5 and below[2] <= 0)
+    # On a phone the controls cover neither the picture nor the tools, however it is held.
+    for width, height in ((390, 844), (360, 640), (640, 360)):
+        hand.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=0.5, mobile=False)
+        hand.wait(f"window.innerWidth === {width}")
+        hand.button("#menu")
+        hand.wait("!document.body.classList.contains('wide')")
+        left, top, right, bottom = range(4)
+        picture, panel, bar = places = [hand.run(f"(() => {{ const r = $('{id}').getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]; }})()") for id in ("canvas", "panel", "tools")]
+        apart = lambda a, b: a[right] <= b[left] + 0.5 or a[bottom] <= b[top] + 0.5
+        check(f"keys: at {width} by {height} pixels picture, panel and tools are at {places}",
+              apart(picture, panel) and apart(picture, bar) and (apart(panel, bar) or apart(bar, panel)) and bar[bottom] <= height and panel[bottom] <= height)
+        check(f"keys: at {width} by {height} pixels picture and panel are at {places[:2]}, which is little", all(r[bottom] - r[top] > 200 and r[right] - r[left] > 240 for r in places[:2]))
+        hand.tool("knife")
+        check(f"keys: at {width} pixels a tool is not reached beside the panel", hand.run("state.tool === 'knife'"))
+        at = hand.run(MIDDLE)
+        check(f"keys: at {width} pixels the body is seen at {at}", max(map(abs, at[:2])) < 0.3 and at[2] < 1.2)
+        hand.tool("orbit")
+        hand.button("#menu")
     check("keys: the page cannot be enlarged", "maximum-scale" not in hand.run("document.querySelector('meta[name=viewport]').content"))
     # The look of the night.
     light = pictures.count(hand, "r + g + b > 600")
+    hand.run("window.background = scene.background, 1")
     hand.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
-    hand.wait("darkness.matches")
+    hand.wait("darkness.matches && scene.background !== window.background")
     dark = pictures.count(hand, "r + g + b > 600")
     text = hand.run("getComputedStyle($('panel')).backgroundColor + getComputedStyle($('tools')).backgroundColor")
     check(f"keys: {light} bright pixels became {dark}, panels are {text}", light > 20000 and dark < 0.1 * light and "248" not in text)

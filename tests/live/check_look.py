@@ -70,6 +70,14 @@ def bodies():
         keep(hand, "before")
         check(f"bodies: {name} begins with no tool of its own", hand.run("state.tool === gallery.find(({ name }) => name === live.told.name).tool"))
     session.program.save("model", "letter.ply")
+    # The look belongs to the body: a page that is loaded again has it, and a model that is dropped does not take it on.
+    body("cake")
+    hand.reload()
+    hand.wait("live.frame === null")
+    check(f"bodies: loaded again the cake is of {hand.run('state.look')}", hand.run("state.look === 'cake' && $('look').value === 'cake'") and count(hand, looks["cake"]) > 2500)
+    hand.drop_files("letter.ply")
+    hand.wait("live.told.name === 'letter' && live.frame === null", seconds=120)
+    check(f"bodies: a dropped model is of {hand.run('state.look')}", hand.run("state.look === 'clay'") and count(hand, looks["letter"]) > 2500 and not hand.run("live.told.gallery"))
     check("bodies: the model is not saved", open("letter.ply", "rb").read(3) == b"ply")
     end(session, "bodies")
 

@@ -12,7 +12,7 @@ keys: a cut by the keyboard alone, dark colours, controls that nothing covers.
 begin: a start without a model shows the choice of bodies, once.
 guide: clicks that do nothing say so, the body is found again, help begins at its top, a new body is in the middle, a button opens files.
 """
-import glob, os, signal, subprocess, time
+import glob, os, signal, subprocess, time, urllib.request
 import pictures
 from client import Program
 from hand import along
@@ -471,6 +471,11 @@ def begin():
     check("begin: a page that is loaded again asks once more", hand.run("!$('bodies').open && live.told.name === 'stone'"))
     program.save("model", "stone.ply")
     check("begin: the body has no model", os.path.getsize("stone.ply") > 1000)
+    named = {}
+    for kind in ("model", "kerf", "ply", "glb", "stl", "toml"):
+        with urllib.request.urlopen(f"{program.address}save?as={kind}", timeout=120) as answer:
+            named[kind] = answer.headers["Content-Disposition"].split('"')[1]
+    check(f"begin: saved files are named {named}", named["model"] == "stone.ply" and named["toml"] == "stone.toml" and len(set(named.values())) == 6)
     check(f"begin: the console has {hand.errors}", not hand.errors)
     check("begin: exit code", program.stop() == 0)
     empty = subprocess.run([os.path.join(tools, "kerf-live"), "--no-browser", ""], capture_output=True, text=True, timeout=60)

@@ -141,7 +141,10 @@ struct Turns::Impl {
         save.answer({.bytes = shown_.model.bytes, .name = shown_.model.name});
       } else {
         const std::string folder = shown_.from_page ? std::filesystem::current_path().string() : "";
-        save.answer({.bytes = saved_file(session(), save.format, folder), .name = shown_.name + "." + save.format});
+        // No file has the name of the model, which the recording names.
+        const std::string kind = save.format == "toml" ? "" : "-saved";
+        save.answer(
+            {.bytes = saved_file(session(), save.format, folder), .name = shown_.name + kind + "." + save.format});
       }
     } catch (const std::exception& e) {
       save.answer({.error = e.what()});

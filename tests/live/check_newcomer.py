@@ -12,7 +12,7 @@ keys: a cut by the keyboard alone, dark colours, controls that nothing covers.
 begin: a start without a model shows the choice of bodies, once.
 guide: clicks that do nothing say so, the body is found again, help begins at its top, a new body is in the middle, a button opens files.
 """
-import glob, os, signal, subprocess, time
+import glob, os, signal, subprocess, time, urllib.request
 import pictures
 from client import Program
 from hand import along
@@ -38,11 +38,14 @@ def first():
     before, high = pictures.count(hand, "r > 160 && b > 95 && r > 1.15 * b"), hand.run(HIGHEST)
     middle = [(a + b) / 2 for a, b in zip(*hand.run("live.told.box"))]
     x, y = hand.place(middle)
+    pictures.keep(hand, "whole")
     # The way to the body takes a second of the run: it would sag by then.
     sagged = []
     hand.drag(along((x - 260, y), (x - 150, y), steps=10), release=False, each=lambda: hand.wait("live.frame === null"))
     hand.wait("live.time > 1")
     sagged.append(abs(hand.run(HIGHEST) - high))
+    differ = pictures.changed(hand, "whole")  # the edge, and what it has swept beside the body
+    check(f"first: {differ:.4f} of the picture differ before the knife meets the body", differ < 0.015)
     for place in along((x - 150, y), (x + 260, y + 20), steps=12):
         hand.mouse("mouseMoved", *place)
     hand.mouse("mouseReleased", x + 260, y + 20)
@@ -67,6 +70,7 @@ def path():
     for _ in range(16):
         hand.key("[")
     x, y = hand.place([0, -0.3, 0.35])
+    pictures.keep(hand, "whole")
     u = along((x - 45, y - 40), (x - 40, y + 25), (x + 40, y + 25), (x + 45, y - 40), steps=8)
     hand.drag(u)
     hand.wait("live.stats.waiting.length === 1")
@@ -75,13 +79,22 @@ def path():
     hand.finish()
     lips = hand.run(LIPS)
     far = [min(((a - c) ** 2 + (b - d) ** 2) ** 0.5 for c, d in lips) for a, b in u[4:-4]]
+    hand.wait("hand.ghosts.length === 0")
+    differ, shown = pictures.changed(hand, "whole"), pictures.changed_along(hand, "whole", u[4:-4])
+    check(f"path: the picture has changed along {shown:.2f} of the U", shown > 0.7)
     check(f"path: the U is not cut where it was drawn, but {max(far):.0f} pixels from there: {u[4 + far.index(max(far))]}", max(far) < 12)
     hand.key("u")
-    hand.wait("live.stats.undo === 0")
+    hand.wait("live.stats.undo === 0 && live.frame === null")
+    again = pictures.changed(hand, "whole")
+    check(f"path: after undo {again:.4f} of the picture differ", again < 0.2 * differ)
     hand.tool("knife")
     left, right = hand.place([-0.9, -0.2, 0.5]), hand.place([0.9, -0.2, 0.5])
     hand.drag(along(left, right, steps=30))
     hand.finish()
+    hand.wait("hand.ghosts.length === 0")
+    inner = [place for place in along(left, right, steps=30) if 0.25 * left[0] + 0.75 * right[0] > place[0] > 0.75 * left[0] + 0.25 * right[0]]
+    shown = pictures.changed_along(hand, "whole", inner)
+    check(f"path: the picture has changed along {shown:.2f} of the shallow stroke", shown > 0.9)
     across = sorted(x for x, y in hand.run(LIPS))
     gaps = [b - a for a, b in zip(across, across[1:])]
     check(f"path: a shallow stroke leaves {max(gaps, default=999):.0f} pixels of skin whole", len(across) > 10 and max(gaps) < 30 and across[-1] - across[0] > 60)
@@ -158,6 +171,8 @@ def touch(kind, *points):
 def hold():
     session = Session("jello")
     hand.key("g")
+    ends = lambda: pictures.count(hand, pictures.ENDS)
+    check(f"hold: {ends()} pixels have the colour of a held place before there is one", ends() == 0)
     top = hand.place([0.5, 0.5, 1.0])
     up = [top[0] + 10, top[1] - 70]
     control = 2
@@ -172,14 +187,20 @@ def hold():
     at = hand.run("live.time")
     hand.wait(f"live.time > {at} + 0.3", seconds=200)
     check(f"hold: the spring has {hand.stats()['pull_force']} N", hand.stats()["pull_force"] > 0)
+    check(f"hold: {ends()} pixels show the held place and its end", ends() > 15)
 
     # The same pointer cuts meanwhile.
     hand.key(" ")
     hand.wait("live.stats.paused")
     hand.tool("knife")
     y = hand.place([0.5, 0.5, 0.6])[1]
+    hand.wait("hand.ghosts.length === 0")
+    pictures.keep(hand, "held")
     hand.drag(along((60, y), (600, y), steps=6))
     hand.finish()
+    hand.wait("hand.ghosts.length === 0")
+    parted = pictures.changed(hand, "held")
+    check(f"hold: the stroke changes {parted:.4f} of the picture, {ends()} pixels show the held place", parted > 0.004 and ends() > 15)
     check(f"hold: while it is held, a stroke cuts not: {hand.stats()}", hand.stats()["undo"] == 1 and hand.run("surface.walls.visible") and len(hand.stats()["holds"]) == 1)
 
     # Its end is moved, and stays there; a click on it lets go.
@@ -192,6 +213,8 @@ def hold():
     hand.click(*end())
     hand.step()
     hand.wait("live.stats.holds.length === 0")
+    hand.wait("hand.ghosts.length === 0")
+    check(f"hold: {ends()} pixels still show what was let go", ends() == 0)
 
     # A second finger, while the first one grabs.
     hand.key("r")
@@ -270,18 +293,28 @@ def look():
     session.done()
 
 
+def pale(name):
+    """What has no program is pale, and words that say so are over it: in the picture of the page, compared with `name`."""
+    words, body = pictures.page_changed(hand, name, "#wait"), pictures.page_changed(hand, name, "#canvas")
+    check(f"gone: {words:.2f} of the words' place and {body:.2f} of the picture differ", words > 0.1 and body > 0.06)
+
+
 def gone():
     session = model("polyp")
+    pictures.keep_page(hand, "live")
     check("gone: exit code", session.program.stop() == 0)
     hand.wait("$('wait').textContent.startsWith('kerf-live has ended')")
     time.sleep(1.5)
+    pale("live")
     check("gone: the page tries again", hand.run("$('wait').textContent").startswith("kerf-live has ended") and not hand.run("$('wait').hidden"))
 
     session = model("polyp")
+    pictures.keep_page(hand, "live")
     session.program.process.kill()
     session.program.process.wait()
     hand.wait("$('wait').textContent.startsWith('No connection')")
     hand.wait("$('wait').textContent.startsWith('kerf-live does not answer')", seconds=40)
+    pale("live")
 
     session = model("polyp", "--linger", "1")
     middle = [(a + b) / 2 for a, b in zip(*hand.run("live.told.box"))]
@@ -384,11 +417,30 @@ def keys():
         hand.wait(f"window.innerWidth === {width}")
         below = hand.run("[$('canvas').getBoundingClientRect().bottom, $('tools').getBoundingClientRect().top, $('tools').scrollWidth - $('tools').clientWidth]")
         check(f"keys: at {width} pixels the tools are over the picture: {below}", below[0] <= below[1] + 0.5 and below[2] <= 0)
+    # On a phone the controls cover neither the picture nor the tools, however it is held.
+    for width, height in ((390, 844), (360, 640), (640, 360)):
+        hand.send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=0.5, mobile=False)
+        hand.wait(f"window.innerWidth === {width}")
+        hand.button("#menu")
+        hand.wait("!document.body.classList.contains('wide')")
+        left, top, right, bottom = range(4)
+        picture, panel, bar = places = [hand.run(f"(() => {{ const r = $('{id}').getBoundingClientRect(); return [r.left, r.top, r.right, r.bottom]; }})()") for id in ("canvas", "panel", "tools")]
+        apart = lambda a, b: a[right] <= b[left] + 0.5 or a[bottom] <= b[top] + 0.5
+        check(f"keys: at {width} by {height} pixels picture, panel and tools are at {places}",
+              apart(picture, panel) and apart(picture, bar) and (apart(panel, bar) or apart(bar, panel)) and bar[bottom] <= height and panel[bottom] <= height)
+        check(f"keys: at {width} by {height} pixels picture and panel are at {places[:2]}, which is little", all(r[bottom] - r[top] > 200 and r[right] - r[left] > 240 for r in places[:2]))
+        hand.tool("knife")
+        check(f"keys: at {width} pixels a tool is not reached beside the panel", hand.run("state.tool === 'knife'"))
+        at = hand.run(MIDDLE)
+        check(f"keys: at {width} pixels the body is seen at {at}", max(map(abs, at[:2])) < 0.3 and at[2] < 1.2)
+        hand.tool("orbit")
+        hand.button("#menu")
     check("keys: the page cannot be enlarged", "maximum-scale" not in hand.run("document.querySelector('meta[name=viewport]').content"))
     # The look of the night.
     light = pictures.count(hand, "r + g + b > 600")
+    hand.run("window.background = scene.background, 1")
     hand.send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
-    hand.wait("darkness.matches")
+    hand.wait("scene.background !== window.background", seconds=10)  # to ask for darkness.matches would take the event away from the page
     dark = pictures.count(hand, "r + g + b > 600")
     text = hand.run("getComputedStyle($('panel')).backgroundColor + getComputedStyle($('tools')).backgroundColor")
     check(f"keys: {light} bright pixels became {dark}, panels are {text}", light > 20000 and dark < 0.1 * light and "248" not in text)
@@ -419,6 +471,11 @@ def begin():
     check("begin: a page that is loaded again asks once more", hand.run("!$('bodies').open && live.told.name === 'stone'"))
     program.save("model", "stone.ply")
     check("begin: the body has no model", os.path.getsize("stone.ply") > 1000)
+    named = {}
+    for kind in ("model", "kerf", "ply", "glb", "stl", "toml"):
+        with urllib.request.urlopen(f"{program.address}save?as={kind}", timeout=120) as answer:
+            named[kind] = answer.headers["Content-Disposition"].split('"')[1]
+    check(f"begin: saved files are named {named}", named["model"] == "stone.ply" and named["toml"] == "stone.toml" and len(set(named.values())) == 6)
     check(f"begin: the console has {hand.errors}", not hand.errors)
     check("begin: exit code", program.stop() == 0)
     empty = subprocess.run([os.path.join(tools, "kerf-live"), "--no-browser", ""], capture_output=True, text=True, timeout=60)

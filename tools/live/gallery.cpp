@@ -86,7 +86,8 @@ ModelFile gallery_model(const std::string& name) {
   for (geo::Vec3& p : mesh.vertices) p = p.cast<float>().cast<double>();
   std::ostringstream out;
   geo::write_ply(out, mesh);
-  return {.name = name + ".ply", .bytes = std::move(out).str(), .tension = at->tension, .up = at->up};
+  return {
+      .name = name + ".ply", .bytes = std::move(out).str(), .tension = at->tension, .up = at->up, .from_gallery = true};
 }
 
 }  // namespace live

@@ -31,7 +31,7 @@ constexpr double latest_begin = 1, latest_end = 2;
 Shown open_from_page(const OpenModel& open, ModelFile model) {
   Shown opened = open(model);
   if (model.tension > 1) opened.session->tighten(model.tension);
-  opened.model = {.name = std::move(model.name), .bytes = std::move(model.bytes)};
+  opened.model = {.name = std::move(model.name), .bytes = std::move(model.bytes), .from_gallery = model.from_gallery};
   opened.from_page = true;
   return opened;
 }
@@ -72,7 +72,7 @@ struct Turns::Impl {
   // Shows a run from its beginning.
   void begin() {
     pacer_ = pacer_of(session());
-    scene_ = std::make_shared<std::string>(scene_text(session(), shown_.name, ++runs_));
+    scene_ = std::make_shared<std::string>(scene_text(session(), shown_.name, ++runs_, shown_.model.from_gallery));
     effort_ = session().effort();
     paused_ = false;
     steps_ = 0;
@@ -141,7 +141,10 @@ struct Turns::Impl {
         save.answer({.bytes = shown_.model.bytes, .name = shown_.model.name});
       } else {
         const std::string folder = shown_.from_page ? std::filesystem::current_path().string() : "";
-        save.answer({.bytes = saved_file(session(), save.format, folder), .name = shown_.name + "." + save.format});
+        // No file has the name of the model, which the recording names.
+        const std::string kind = save.format == "toml" ? "" : "-saved";
+        save.answer(
+            {.bytes = saved_file(session(), save.format, folder), .name = shown_.name + kind + "." + save.format});
       }
     } catch (const std::exception& e) {
       save.answer({.error = e.what()});

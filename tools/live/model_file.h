@@ -17,6 +17,7 @@ struct ModelFile {
   std::optional<std::vector<BesideFile>> beside = {};  ///< that came with it; nothing: they are in its folder
   double tension = 1;                                  ///< stretch of its skin
   char up = 0;                                         ///< vertical axis, 'y' or 'z'; 0: it is not known
+  bool from_gallery = false;                           ///< by its name, a page knows what it is made of
 };
 
 }  // namespace live

@@ -64,7 +64,7 @@ std::pair<double, double> frictions_of(const geo::Scene& scene) {
 
 }  // namespace
 
-std::string scene_text(const Session& session, const std::string& name, std::uint64_t run) {
+std::string scene_text(const Session& session, const std::string& name, std::uint64_t run, bool from_gallery) {
   const geo::Scene& scene = session.original();
   const geo::Body& body = session.run().body();
   geo::Box3 box;
@@ -77,6 +77,7 @@ std::string scene_text(const Session& session, const std::string& name, std::uin
   for (const geo::Blade& b : scene.blades) blades.push_back({{"name", b.name}, {"points", flat(b.at(0))}});
   Json text{{"name", name},
             {"run", run},
+            {"gallery", from_gallery},
             {"up", sim::up_axis(scene.gravity) == 'Y' ? "y" : "z"},
             {"gravity", point(scene.gravity)},
             {"bodies", bodies},
@@ -138,7 +139,7 @@ std::string statistics_text(const Session& session, const Pace& pace) {
               {"gravity", point(session.gravity())},
               {"friction", frictions_of(now).second},
               {"friction_least", frictions_of(now).first},
-              {"damping", now.material.damping},
+              {"damping", session.damping()},
               {"tension", session.original().prestretch.skin},
               {"resistance", session.hands().edges().resistance},
               {"dullness", session.hands().edges().friction}}}};

@@ -18,8 +18,10 @@ struct Pace {
   std::string message;  ///< of the last seconds; may be empty
 };
 
-/// The JSON of STATE. `run`: a number that changes where another model is opened.
-std::string scene_text(const Session& session, const std::string& name, std::uint64_t run = 1);
+/// The JSON of STATE. `run`: a number that changes where another model is opened; `from_gallery`:
+/// whether the gallery has the body by this name.
+std::string scene_text(const Session& session, const std::string& name, std::uint64_t run = 1,
+                       bool from_gallery = false);
 /// The statistics of FRAME, without the last brace.
 std::string statistics_text(const Session& session, const Pace& pace);
 

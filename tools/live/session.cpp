@@ -14,6 +14,7 @@ namespace live {
 namespace {
 
 constexpr double rest_before_sleep = 1;  // s: what swings slowly has moved on by then
+constexpr double hold_damping = 30;  // 1/s: an apple that a knife takes 5 s to cut moves by 0.02 of its size, not 0.25
 
 }  // namespace
 
@@ -95,9 +96,15 @@ void Session::obey(const Set& set) {
   if (changes_.size() >= bounds_.changes) throw BadMessage("the recording is full; save it and reset");
   geo::SceneChange change;
   change.young = set.young;
-  change.damping = set.damping;
-  change.gravity = set.gravity;
   change.friction = set.friction;
+  if (withheld_) {  // they act with the weight
+    withheld_->gravity = set.gravity.value_or(withheld_->gravity);
+    withheld_->damping = set.damping.value_or(withheld_->damping);
+  } else {
+    change.damping = set.damping;
+    change.gravity = set.gravity;
+  }
+  if (!change.young && !change.friction && !change.damping && !change.gravity) return;
   try {
     change_run(change);
   } catch (const geo::InputError& e) {
@@ -203,9 +210,15 @@ void Session::redo() {
 
 void Session::withhold_weight() {
   if (withheld_ || setup_.scene.loaded || run_.scene().gravity.isZero() || changes_.size() >= bounds_.changes) return;
-  const geo::Vec3 gravity = run_.scene().gravity;
-  change_run({.gravity = geo::Vec3(geo::Vec3::Zero())});
-  withheld_ = gravity;
+  const geo::Scene& scene = run_.scene();
+  const Withheld values{scene.gravity, scene.material.damping};
+  change_run({.damping = std::max(values.damping, hold_damping), .gravity = geo::Vec3(geo::Vec3::Zero())});
+  withheld_ = values;
+}
+
+void Session::give_weight() {
+  change_run({.damping = withheld_->damping, .gravity = withheld_->gravity});
+  withheld_.reset();
 }
 
 void Session::reset() {
@@ -229,10 +242,7 @@ std::size_t Session::end_late_strokes(double seconds, double most) {
 }
 
 std::string Session::advance(bool whole) {
-  if (withheld_ && !hands_.has_strokes()) {
-    change_run({.gravity = *withheld_});
-    withheld_.reset();
-  }
+  if (withheld_ && !hands_.has_strokes()) give_weight();
   bool saved = false;  // strokes that begin in one frame are one step of undo
   const auto save = [&] {
     if (saved)

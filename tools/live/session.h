@@ -58,7 +58,8 @@ class Session {
   /// Goes to where the last undo left. Throws BadMessage without one, or after a new cut.
   void redo();
   /// Weight acts from when no stroke is in the body, but not yet: a body at rest without weight
-  /// does not sag under the knife that cuts it first. A body that rests in its weight keeps it.
+  /// does not sag under the knife that cuts it first. Without weight no friction of the ground holds
+  /// it. A drag does, so a slow knife does not push it along. A body that rests in its weight keeps it.
   void withhold_weight();
   /// Begins anew.
   void reset();
@@ -107,7 +108,9 @@ class Session {
   /// Whether weight is withheld.
   bool is_weightless() const { return withheld_.has_value(); }
   /// Gravity, also while it is withheld.
-  geo::Vec3 gravity() const { return withheld_ ? *withheld_ : run_.scene().gravity; }
+  geo::Vec3 gravity() const { return withheld_ ? withheld_->gravity : run_.scene().gravity; }
+  /// Damping of the material, 1/s, likewise.
+  double damping() const { return withheld_ ? withheld_->damping : run_.scene().material.damping; }
   /// Blows in the body as it is now.
   int blows() const { return static_cast<int>(blows_.size()); }
   /// World positions of the edges of blades that exist, each with the force on it, N.
@@ -120,6 +123,8 @@ class Session {
     return {.lasting = hands_.lasting(), .checkpoints = checkpoints_, .withheld = withheld_, .blows = blows_};
   }
   std::string state_bytes() const;
+  // Weight acts, and the drag that held the body ends.
+  void give_weight();
   // Changes values of the run. Throws InputError for values that a scene may not have.
   void change_run(geo::SceneChange change);
   // Goes to a state before a stroke.
@@ -143,7 +148,7 @@ class Session {
   std::uint32_t faces_ = 0;  // of the complex
   std::map<ClientId, std::uint64_t> taken_;
   std::vector<geo::SceneChange> changes_;  // by hands and effort
-  std::optional<geo::Vec3> withheld_;      // gravity that does not act yet
+  std::optional<Withheld> withheld_;       // what does not act yet
   std::vector<geo::Blow> blows_;           // by hands, in the body as it is now
   std::vector<int> checkpoints_;           // frames from which the run went on from its own checkpoint
 };

@@ -13,12 +13,18 @@
 
 namespace live {
 
+/// Values of a scene that do not act yet: a body without weight is held by a drag instead.
+struct Withheld {
+  geo::Vec3 gravity;  ///< model units per s²
+  double damping;     ///< 1/s
+};
+
 /// Parts of a live run that are not in its scene, body and motion.
 struct Beside {
   Lasting lasting;
-  std::vector<int> checkpoints;       ///< frames from which the run went on from its own checkpoint
-  std::optional<geo::Vec3> withheld;  ///< gravity that does not act yet
-  std::vector<geo::Blow> blows;       ///< by hands, so far
+  std::vector<int> checkpoints;      ///< frames from which the run went on from its own checkpoint
+  std::optional<Withheld> withheld;  ///< until the first stroke is over
+  std::vector<geo::Blow> blows;      ///< by hands, so far
 };
 
 /// A run as it was before a stroke.

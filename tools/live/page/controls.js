@@ -163,6 +163,7 @@ function followAddress() {
   const wishes = [...new URLSearchParams(location.hash.slice(1))];
   for (const [key, value] of wishes.sort(([a], [b]) => (a === "skin") - (b === "skin"))) {  // others change the skin, too
     if (key === "bodies") galleryAsked = value === "true";
+    else if (key === "look") set("look", lookAsked = value);
     else if (key in home) home[key] = view[key] = Number(value);
     else if (key in state) set(key, value === "true" || value === "false" ? value === "true" : Number.isFinite(Number(value)) ? Number(value) : value);
   }
@@ -178,7 +179,7 @@ function dress() {
   world.begin();
   clamp.leave();
   $("wait").hidden = true;
-  beginWithGallery();
+  beginWithLook(), beginWithGallery();
 }
 
 function begin() {

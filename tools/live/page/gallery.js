@@ -4,13 +4,20 @@ const gallery = [
   ["tissue", "tissue", "scalpel"], ["board", "wood", "break"], ["log", "log", "break"], ["stone", "stone", "break"], ["letter", "clay", "knife"],
 ].map(([name, look, tool]) => ({ name, look, tool }));
 
+// The look that a body begins with. The one that the address asks for is of the body that it shows.
+let lookAsked = null;
+function beginWithLook() {
+  const own = live.told.gallery ? gallery.find(({ name }) => name === live.told.name)?.look : undefined;
+  set("look", lookAsked ?? own ?? "clay");
+  lookAsked = null;
+}
+
 // An address with #bodies=true begins with the choice of bodies, once: a page that is loaded again shows the body.
 let galleryAsked = false;
 function beginWithGallery() {
   if (!galleryAsked) return;
   galleryAsked = false;
   history.replaceState(null, "", location.pathname + location.search);
-  set("look", gallery.find(({ name }) => name === live.told.name)?.look ?? state.look);
   orders.gallery();
 }
 
@@ -31,7 +38,7 @@ function listenToGallery() {
     button.addEventListener("click", () => {
       $("bodies").close();
       endStroke();
-      set("look", look), set("tool", tool);
+      set("tool", tool);
       opening(button.textContent);
       send({ show: name });
     });

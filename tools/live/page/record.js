@@ -63,12 +63,12 @@ const recorder = {
     if (live.told.run !== this.run || performance.now() - this.begun > 1000 * this.longest) return this.stop();
     this.take();
   },
-  saveVideo() { saveBlob(new Blob(this.video, { type: "video/webm" }), "webm"); },
-  saveAnimation() { saveBlob(new Blob([animatedGlb(this.frames, looks[state.look] ?? looks.clay)]), "glb"); },
+  saveVideo() { saveBlob(new Blob(this.video, { type: "video/webm" }), ".webm"); },
+  saveAnimation() { saveBlob(new Blob([animatedGlb(this.frames, looks[state.look] ?? looks.clay)]), "-animation.glb"); },
 };
 function saveBlob(blob, ending) {
   const saved = document.createElement("a");
-  saved.href = URL.createObjectURL(blob), saved.download = live.told.name.replace(/[^\w.-]+/g, "_") + "." + ending;
+  saved.href = URL.createObjectURL(blob), saved.download = live.told.name.replace(/[^\w.-]+/g, "_") + ending;
   saved.click();
   setTimeout(() => URL.revokeObjectURL(saved.href), 60000);
 }

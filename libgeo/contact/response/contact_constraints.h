@@ -39,7 +39,7 @@ std::vector<ContactConstraint> contact_constraints(const std::vector<ContactCand
 
 /// Adds constraints between coincident vertices, the sides of a closed sheet, whose targets lie
 /// farther than `tolerance` behind each other. The normal is the difference of the vertices'
-/// normals (`normals`: vertex_normals()). ConstraintOptions::reach has no effect.
+/// normals (`normals`: normals_across_sheets()). ConstraintOptions::reach has no effect.
 void add_sheet_constraints(const CoincidentVertices& coincident, const std::vector<Vec3>& targets,
                            const std::vector<Vec3>& normals, double tolerance, const ConstraintOptions& options,
                            std::vector<ContactConstraint>& constraints);

@@ -51,9 +51,10 @@ class PenaltyAssembly {
 
   // Contacts between the two sides of a closed sheet: coincident vertices.
   void add_sheet_sides() {
-    const CoincidentVertices& coincident = surface_.coincidence().coincident;
+    const auto& [representative, coincident] = surface_.coincidence();
     std::vector<ContactConstraint> sides;
-    const auto normals = vertex_normals(surface_.topology(), surface_.fans(), coincident, surface_.positions());
+    const auto normals =
+        normals_across_sheets(surface_.topology(), surface_.fans(), coincident, representative, surface_.positions());
     add_sheet_constraints(coincident, in_.free_targets, normals, -candidate_distance * edge_, {in_.dt}, sides);
     add(deepest_constraints(sides, in_.weights, constraints_per_node_pair),
         CoincidentVertices::all_distinct(coincident.size()), in_.targets, 0);

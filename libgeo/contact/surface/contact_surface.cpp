@@ -135,4 +135,15 @@ std::vector<Vec3> coincident_side_normals(const ContactSurface& surface, std::sp
   return normals;
 }
 
+std::vector<Vec3> normals_across_sheets(const ContactSurface& surface, const VertexFans& fans,
+                                        const CoincidentVertices& coincident,
+                                        std::span<const std::uint32_t> representative,
+                                        const std::vector<Vec3>& positions) {
+  std::vector<Vec3> normals = coincident_side_normals(surface, representative, positions);
+  const std::vector<Vec3> of_all = vertex_normals(surface, fans, coincident, positions);
+  for (std::size_t v = 0; v < normals.size(); ++v)
+    if (normals[v].isZero(0)) normals[v] = of_all[v];
+  return normals;
+}
+
 }  // namespace geo

@@ -15,10 +15,14 @@ namespace {
 
 using Representatives = std::vector<std::uint32_t>;
 
+constexpr std::uint32_t no_vertex = ~0u;
+
 // Normals of a closed sheet's vertices.
 struct SheetNormals {
   std::vector<Vec3> all;         // of all triangles at a vertex
   std::vector<Vec3> coincident;  // of those that coincide with the other side; zero: there are none
+
+  const Vec3& across(std::uint32_t v) const { return coincident[v].isZero(0) ? all[v] : coincident[v]; }
 };
 
 // Whether the targets of two copies come apart: with d = to_a − to_b and n the normalised
@@ -27,7 +31,7 @@ struct SheetNormals {
 // hold two bodies together that touch nowhere else.
 bool come_apart(const SheetNormals& normals, std::uint32_t a, std::uint32_t b, const Vec3& apart, double opening) {
   if (normals.coincident[a].isZero(0) && normals.coincident[b].isZero(0)) return apart.norm() > opening;
-  const Vec3 n = (normals.all[b].normalized() - normals.all[a].normalized()).normalized();
+  const Vec3 n = (normals.across(b).normalized() - normals.across(a).normalized()).normalized();
   const double along = n.dot(apart);
   return along > opening || (apart - along * n).norm() > 3 * opening;
 }
@@ -152,8 +156,9 @@ class SheetOpener {
     return refused;
   }
 
-  // Opens vertices one after another, since others may have been in the way. Tries moves of both
-  // copies and of all but the first. Returns the number of vertices that stay closed.
+  // Opens vertices one after another, since others may have been in the way. Tries moves of all
+  // copies, of all but the first, and of each alone. Returns the number of vertices that stay
+  // closed.
   std::size_t open_one_by_one(Representatives closed) {
     auto representative = coincident_representatives(surface_.site, positions_);
     auto pairs_of = pairs_at(closed);
@@ -161,15 +166,22 @@ class SheetOpener {
     return std::erase_if(closed, [&](auto v) {
       auto& pairs = pairs_of[next++];
       const auto opens = [&](int trial, Way way) {
-        for (const bool all : {true, false}) {
-          for (const auto c : coincident_[v]) {
-            const bool moves = all || c != coincident_[v][0];
-            positions_[c] = moves ? Vec3(closed_[v] + move_of(c, way, trial)) : closed_[v];
-            representative[c] = c;
+        const std::span<const std::uint32_t> copies = coincident_[v];
+        const auto opens_as = [&](const auto& moves) {
+          std::uint32_t staying = no_vertex;
+          for (const auto c : copies) {
+            positions_[c] = moves(c) ? Vec3(closed_[v] + move_of(c, way, trial)) : closed_[v];
+            if (!moves(c) && staying == no_vertex) staying = c;
+            representative[c] = moves(c) ? c : staying;
           }
-          if (!any_crosses(pairs, representative)) return true;
-        }
-        return false;
+          return !any_crosses(pairs, representative);
+        };
+        if (opens_as([](std::uint32_t) { return true; })) return true;
+        if (opens_as([&](std::uint32_t c) { return c != copies[0]; })) return true;
+        // Where sheets meet, some copies may part and others not.
+        return copies.size() > 2 && std::any_of(copies.begin(), copies.end(), [&](std::uint32_t one) {
+                 return opens_as([one](std::uint32_t c) { return c == one; });
+               });
       };
       for (int trial = 0; trial < trials_of_ways; ++trial)
         if (opens(trial, Way::inward) || opens(trial, Way::normal)) return false;

@@ -326,8 +326,8 @@ TEST_CASE("a flap that is thinner than a twentieth of a spacing gains no energy"
   }
 }
 
-// Tori whose lower parts are cut off by a stroke through the plane of their ring, the last of two or
-// three. Walls that part along that plane do not hold, and rub on nothing but each other.
+// Tori whose lower parts are cut off by a stroke through the plane of their ring, the last of two
+// or three. Walls that part along that plane do not hold, and rub on nothing but each other.
 TEST_CASE("pieces that are cut off from below fall, wherever they are", "[placements]") {
   const auto ways = placements();
   for (const std::uint64_t scene : {11700000232 / 8, 11800000104 / 8}) {

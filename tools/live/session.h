@@ -58,8 +58,9 @@ class Session {
   /// Goes to where the last undo left. Throws BadMessage without one, or after a new cut.
   void redo();
   /// Weight acts from when no stroke is in the body, but not yet: a body at rest without weight
-  /// does not sag under the knife that cuts it first. Without weight no friction of the ground holds
-  /// it. A drag does, so a slow knife does not push it along. A body that rests in its weight keeps it.
+  /// does not sag under the knife that cuts it first. Without weight no friction of the ground
+  /// holds it. A drag does, so a slow knife does not push it along. A body that rests in its weight
+  /// keeps it.
   void withhold_weight();
   /// Begins anew.
   void reset();

@@ -319,11 +319,13 @@ def kinds_of_vectors():
     run("kerf-sim s.toml -o run --resume && kerf-sim s.toml -o other --resume --portable")
 
 
-@case(" apart; a surface bends and touches at its vertices: kerf-repair --edge ")
+@case(", or kerf-repair --edge ")
 def coarse_models():
     box("box.obj", ((0, 0, 0), 1))
     scene("s.toml", "[body]\nmesh = 'box.obj'\nnodes = 300")
-    command = said("kerf-sim s.toml -o run", r"(kerf-repair --edge [0-9.e-]+) gives it more", 0)[1]
+    command = said("kerf-sim s.toml -o run", r"(kerf-repair --edge [0-9.e-]+), gives it more", 0)[1]
+    refine = said("kerf-sim s.toml -o told", r"body.refine = ([0-9.e-]+), or", 0)[1]
+    assert "gives it more" not in run(f"kerf-sim s.toml --set body.refine={refine} -o refined")[1]
     run(f"{command} box.obj -o fine.ply")
     scene("s.toml", "[body]\nmesh = 'fine.ply'\nnodes = 300")
     assert "kerf-repair" not in run("kerf-sim s.toml -o finer")[1]

@@ -112,7 +112,8 @@ void warn_of_coarse_models(const Setup& setup, const geo::Body& body, const tool
     std::snprintf(share, sizeof share, "%.1g", coarsest / geo::bounding_box(model).diagonal());
     t.say(t.name() + ": " + fs::path(setup.scene.bodies[b].mesh).filename().string() + " has edges of up to " +
           tool::rounded(longest) + ", nodes are at most " + tool::rounded(coarsest) +
-          " apart; a surface bends and touches at its vertices: kerf-repair --edge " + share + " gives it more");
+          " apart; a surface bends and touches at its vertices: body.refine = " + tool::rounded(coarsest) +
+          ", or kerf-repair --edge " + share + ", gives it more");
   }
 }
 

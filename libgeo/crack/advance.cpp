@@ -230,7 +230,10 @@ Step try_step(Complex& complex, const FrontState& front, const std::vector<Vec3>
   deltas.push_back(crack::insert_strip(complex, strip, arrangement, front.crack, vertex, clearance, stats));
   if (is_divided && deltas.back().empty()) throw GeometryError("edges are divided where nothing is cut");
   stats.joined_specks += join_specks(complex, snapping, deltas);
+  const bool is_sum = deltas.size() > 1;
   result.delta = joined(std::move(deltas));
+  // Else K would keep the numbers of what came and went, and who follows it would not know.
+  if (is_sum && result.delta.empty()) throw GeometryError("nothing but specks would come off");
   watch.lap();
   advance_contacts(result.front, complex, strip, arrangement, vertex);
   stats.stitch_seconds += watch.lap();

@@ -347,6 +347,18 @@ TEST_CASE("pieces that are cut off from below fall, wherever they are", "[placem
   }
 }
 
+// Three strokes along one line of the mesh leave splinters. All that one step of the third would cut
+// off is specks, which are joined again: nothing is left of the step, and nobody is told of it.
+TEST_CASE("a step of which nothing is left but specks is none", "[placements]") {
+  const CutScene cut = random_cut_scene(11800000702 / 8);
+  const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
+  const Placement way = placements()[6];
+  const CutScene moved = placed(cut, way);
+  const Outcome outcome = run(moved, simulation_of(moved, placed(nodes, way)));
+  CHECK(outcome.crossings == 0);
+  CHECK(outcome.volumes[0] > 0.99);
+}
+
 // Two strokes through one plane, some hundredths of a spacing apart: the flap between them has a
 // chain of nodes, hardly a material point, and walls on both sides. Steps that find no balance are
 // halved again and again, with hundreds of iterations a frame.

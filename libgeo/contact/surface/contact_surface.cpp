@@ -135,14 +135,32 @@ std::vector<Vec3> coincident_side_normals(const ContactSurface& surface, std::sp
   return normals;
 }
 
+namespace {
+
+// Per vertex the sum of the normals of its triangles on faces with two sides.
+std::vector<Vec3> wall_normals(const ContactSurface& surface, const std::vector<Vec3>& p) {
+  std::vector<Vec3> normals(p.size(), Vec3::Zero());
+  for (std::size_t t = 1; t < surface.triangles.size(); ++t) {
+    if (surface.side[t] / 2 != surface.side[t - 1] / 2) continue;
+    for (const auto& [a, b, c] : {surface.triangles[t - 1], surface.triangles[t]}) {
+      const Vec3 n = (p[b] - p[a]).cross(p[c] - p[a]);
+      for (const auto v : {a, b, c}) normals[v] += n;
+    }
+  }
+  return normals;
+}
+
+}  // namespace
+
 std::vector<Vec3> normals_across_sheets(const ContactSurface& surface, const VertexFans& fans,
                                         const CoincidentVertices& coincident,
                                         std::span<const std::uint32_t> representative,
                                         const std::vector<Vec3>& positions) {
   std::vector<Vec3> normals = coincident_side_normals(surface, representative, positions);
+  const std::vector<Vec3> of_walls = wall_normals(surface, positions);
   const std::vector<Vec3> of_all = vertex_normals(surface, fans, coincident, positions);
   for (std::size_t v = 0; v < normals.size(); ++v)
-    if (normals[v].isZero(0)) normals[v] = of_all[v];
+    if (normals[v].isZero(0)) normals[v] = of_walls[v].isZero(0) ? of_all[v] : of_walls[v];
   return normals;
 }
 

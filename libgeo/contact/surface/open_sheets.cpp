@@ -19,19 +19,14 @@ constexpr std::uint32_t no_vertex = ~0u;
 
 // Normals of a closed sheet's vertices.
 struct SheetNormals {
-  std::vector<Vec3> all;         // of all triangles at a vertex
-  std::vector<Vec3> coincident;  // of those that coincide with the other side; zero: there are none
-
-  const Vec3& across(std::uint32_t v) const { return coincident[v].isZero(0) ? all[v] : coincident[v]; }
+  std::vector<Vec3> all;     // of all triangles at a vertex
+  std::vector<Vec3> across;  // normals_across_sheets()
 };
 
 // Whether the targets of two copies come apart: with d = to_a − to_b and n the normalised
-// difference of unit normals, n · d > opening or |d − (n · d) n| > 3 opening. Where the sheet is
-// open all around them, in any direction: they are tips of spikes, whose normals tell nothing, and
-// hold two bodies together that touch nowhere else.
+// difference of unit normals across, n · d > opening or |d − (n · d) n| > 3 opening.
 bool come_apart(const SheetNormals& normals, std::uint32_t a, std::uint32_t b, const Vec3& apart, double opening) {
-  if (normals.coincident[a].isZero(0) && normals.coincident[b].isZero(0)) return apart.norm() > opening;
-  const Vec3 n = (normals.across(b).normalized() - normals.across(a).normalized()).normalized();
+  const Vec3 n = (normals.across[b].normalized() - normals.across[a].normalized()).normalized();
   const double along = n.dot(apart);
   return along > opening || (apart - along * n).norm() > 3 * opening;
 }
@@ -62,10 +57,7 @@ class SheetOpener {
         gap_(gap),
         closed_(positions),
         positions_(positions),
-        inward_(std::move(normals.coincident)) {
-    for (std::size_t v = 0; v < inward_.size(); ++v)
-      if (inward_[v].isZero(0)) inward_[v] = normals_[v];
-  }
+        inward_(std::move(normals.across)) {}
 
   // Returns the number of representatives that remain closed.
   std::size_t run(const Representatives& opening) {
@@ -233,7 +225,7 @@ class SheetOpener {
   const std::vector<Vec3> closed_;  // positions before
   std::vector<Vec3>& positions_;
   std::vector<TrianglePair> pairs_;
-  std::vector<Vec3> inward_;  // per vertex: normal of the coincident triangles, else of all its triangles
+  std::vector<Vec3> inward_;  // per vertex: normals_across_sheets()
 };
 
 }  // namespace
@@ -242,7 +234,7 @@ std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, c
                         const std::vector<Vec3>& to, double gap, double opening, std::vector<Vec3>& positions) {
   const auto& [representative, coincident] = coincidence;
   SheetNormals normals{.all = vertex_normals(surface, fans, coincident, positions),
-                       .coincident = coincident_side_normals(surface, representative, positions)};
+                       .across = normals_across_sheets(surface, fans, coincident, representative, positions)};
   const Representatives candidates = find_opening(coincident, normals, to, opening);
   if (candidates.empty()) return 0;
   return candidates.size() - SheetOpener(surface, coincident, std::move(normals), to, gap, positions).run(candidates);

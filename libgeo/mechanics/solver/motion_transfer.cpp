@@ -1,5 +1,6 @@
 // SolidDiscretisation::update_nodes() of solid_discretisation.h. Transfer of motion over a cut: to
 // new and moved nodes, with the momenta of each component of the graph.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -149,8 +150,8 @@ struct BoxMotion {
   Vec3 displacement(const Vec3& x) const { return translation + (rotation - Mat3::Identity()) * (x - centre); }
 };
 
-// That of the nodes in a box, by Kabsch (1976), however few they are and though they lie in a plane
-// or on a line: it is known, and does not need four nodes that span space. Empty without nodes.
+// That of the nodes in a box, by Kabsch (1976), though they lie in a plane. Empty where they lie
+// about on a line: they leave open how the material has turned about it, which Eq. 1 knows.
 std::optional<BoxMotion> motion_of_box(const SolidDiscretisation& before, std::span<const std::uint32_t> nodes,
                                        const State& state) {
   if (nodes.empty()) return {};
@@ -169,6 +170,15 @@ std::optional<BoxMotion> motion_of_box(const SolidDiscretisation& before, std::s
     momenta.add(1, before.position[i] + state.displacement[i], state.velocity[i]);
   }
   motion.velocity = velocity_of(momenta, rounding);
+  // Extent across the line over that along it, below which noise decides about the rotation.
+  constexpr double flat = 0.1;
+  Mat3 own = Mat3::Zero();
+  for (const std::uint32_t i : nodes) {
+    const Vec3 arm = before.position[i] - motion.centre;
+    own += arm * arm.transpose();
+  }
+  const Vec3 extents = Eigen::SelfAdjointEigenSolver<Mat3>(own, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(extents[1] > flat * flat * extents[2])) return {};
   const Vec3& first = state.displacement[nodes[0]];
   if (std::all_of(nodes.begin(), nodes.end(), [&](auto i) { return state.displacement[i] == first; })) {
     motion.translation = first;

@@ -89,8 +89,8 @@ TEST_CASE("vertices stay closed if their targets overlap or hardly differ", "[op
   CHECK(sheet.crossings() == 0);
 }
 
-// The last vertex of a sheet that has opened and slid on: both copies are tips of spikes, whose
-// normals tell where the other body is as little as those of a needle. In all directions.
+// The last vertex of a sheet that has opened and slid on: both copies are tips of spikes. In all
+// directions.
 TEST_CASE("a vertex opens where the sheet is open all around it", "[open-sheets]") {
   constexpr double gap = 1e-3, opening = 1e-2;
   for (int k = 0; k < 12; ++k) {
@@ -108,11 +108,34 @@ TEST_CASE("a vertex opens where the sheet is open all around it", "[open-sheets]
     }
     REQUIRE(sheet.crossings() == 0);
     std::vector<Vec3> to = sheet.positions;
-    const Vec3 across = opening * Vec3(by.x(), by.y(), 0).normalized();
-    to[tip] += across;
-    to[middle] -= across;
+    to[tip] += opening * Vec3::UnitZ();
+    to[middle] -= opening * Vec3::UnitZ();
     CHECK(sheet.open(to, gap, opening) == 1);
     CHECK(sheet.crossings() == 0);
     CHECK(sheet.positions[tip] != sheet.positions[middle]);
   }
+}
+
+// The edge of a sheet that ends in the skin: the skin's triangles lean out, and are larger.
+TEST_CASE("a vertex in the skin opens along the normal of its sheet", "[open-sheets]") {
+  constexpr double gap = 1e-3, opening = 1e-2;
+  ClosedSheet sheet(4);
+  const std::uint32_t middle = 2 * 5 + 2;
+  std::uint32_t tip = 0;
+  for (const auto v : sheet.upper)
+    if (sheet.surface.site[v] == middle) tip = v;
+  // A skin triangle at either copy of the middle, both steep, with the same normal.
+  const auto first = static_cast<std::uint32_t>(sheet.positions.size());
+  sheet.positions.insert(sheet.positions.end(),
+                         {Vec3(1.9, 2.4, 9), Vec3(2.1, 2.4, 9), Vec3(1.9, 1.6, -9), Vec3(2.1, 1.6, -9)});
+  for (std::uint32_t v = 0; v < 4; ++v) sheet.surface.site.push_back(100 + v);
+  const std::uint32_t face = sheet.surface.side.back() / 2;
+  sheet.surface.triangles.push_back({tip, first, first + 1});
+  sheet.surface.triangles.push_back({middle, first + 3, first + 2});
+  sheet.surface.side.insert(sheet.surface.side.end(), {2 * (face + 1), 2 * (face + 2)});
+  REQUIRE(sheet.crossings() == 0);
+  std::vector<Vec3> to = sheet.positions;
+  to[tip].z() += 0.6 * opening;
+  to[middle].z() -= 0.6 * opening;
+  CHECK(sheet.open(to, gap, opening) == 1);
 }

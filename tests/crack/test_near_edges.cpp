@@ -178,9 +178,15 @@ void stroke(Complex& k, const Plane& plane, std::int32_t crack, double snap_edge
     return step;
   };
   FrontState front = begin_front(step_at(0), false, crack);
-  // A step may have gone a part of its way: the last ones go the rest.
-  for (std::uint32_t s = 1; s <= steps + 4; ++s)
-    advance(k, front, step_at(std::min(s, steps)), {.snap_edges = snap_edges});
+  // A step may have gone a part of its way: the last ones go the rest. Without a change, K has no
+  // new number, either: those who follow it learn of none.
+  for (std::uint32_t s = 1; s <= steps + 4; ++s) {
+    const std::uint32_t faces = k.face_count();
+    const std::uint32_t vertices = k.surface_vertex_count();
+    if (!advance(k, front, step_at(std::min(s, steps)), {.snap_edges = snap_edges}).empty()) continue;
+    CHECK(k.face_count() == faces);
+    CHECK(k.surface_vertex_count() == vertices);
+  }
 }
 
 }  // namespace

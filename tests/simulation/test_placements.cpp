@@ -347,8 +347,8 @@ TEST_CASE("pieces that are cut off from below fall, wherever they are", "[placem
   }
 }
 
-// Three strokes along one line of the mesh leave splinters. All that one step of the third would cut
-// off is specks, which are joined again: nothing is left of the step, and nobody is told of it.
+// Three strokes along one line of the mesh leave splinters. A step of the third would cut off only
+// specks, which are joined again: nothing is left of the step.
 TEST_CASE("a step of which nothing is left but specks is none", "[placements]") {
   const CutScene cut = random_cut_scene(11800000702 / 8);
   const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;

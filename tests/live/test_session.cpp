@@ -590,7 +590,7 @@ TEST_CASE("weight that is withheld acts when the first stroke is over") {
   CHECK(session.run().scene().gravity == geo::Vec3(0, 0, -3));
 }
 
-TEST_CASE("a slow knife does not push along a body without weight; values set meanwhile act with the weight") {
+TEST_CASE("a slow knife does not push along a body without weight, and values set meanwhile act with the weight") {
   Session session(setup(), {});
   session.withhold_weight();
   constexpr int frames = 240;

@@ -153,10 +153,10 @@ std::optional<std::uint32_t> HeldMaterial::rigid_box_at(const Vec3& x) const {
   return box;
 }
 
-std::vector<std::uint32_t> HeldMaterial::nodes_in(std::uint32_t box) const {
+std::vector<std::uint32_t> HeldMaterial::nodes_in(std::uint32_t box, const std::vector<Vec3>& position) const {
   std::vector<std::uint32_t> nodes;
-  for (std::uint32_t i = 0; i < box_of_node_.size(); ++i)
-    if (box_of_node_[i] == box) nodes.push_back(i);
+  for (std::uint32_t i = 0; i < position.size(); ++i)
+    if (box_holding(position[i]) == box) nodes.push_back(i);
   return nodes;
 }
 

@@ -28,8 +28,8 @@ class HeldMaterial {
   bool is_near(const Vec3& x, double reach) const;
   /// The first box that holds x, if it moves like a rigid body.
   std::optional<std::uint32_t> rigid_box_at(const Vec3& x) const;
-  /// The nodes in a box, as of the last apply(), ascending.
-  std::vector<std::uint32_t> nodes_in(std::uint32_t box) const;
+  /// The nodes at these positions that a box holds, ascending.
+  std::vector<std::uint32_t> nodes_in(std::uint32_t box, const std::vector<Vec3>& position) const;
   /// Farthest from a box that a point is replaced, model units: supports of points may be widened.
   static double reach_of(const NodeSet& nodes);
   /// Puts back the shape gradients of the plain basis. Keeps results of apply() for the next one.

@@ -215,7 +215,7 @@ std::vector<HeldNode> motions_in_boxes(const SolidDiscretisation& before, const 
     const std::optional<std::uint32_t> box = before.held.rigid_box_at(x);
     if (!box) continue;
     const auto [known, is_new] = boxes.try_emplace(*box);
-    if (is_new) known->second = motion_of_box(before, before.held.nodes_in(*box), state);
+    if (is_new) known->second = motion_of_box(before, before.held.nodes_in(*box, before.position), state);
     if (!known->second) continue;
     const BoxMotion& motion = *known->second;
     const Vec3 displacement = motion.displacement(x);

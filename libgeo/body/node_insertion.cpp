@@ -25,9 +25,8 @@ namespace {
 // nodes are moved and lose their edges.
 constexpr double on_face = 0.02;
 
-// Walls nearer to each other than this, in spacings, have no node between them: twice what a sheet
-// snaps by, which is the thickness of specks.
-constexpr double resolved_walls = 0.002;
+// Walls nearer to each other than this, in spacings, have no node between them (decision 116).
+constexpr double resolved_walls = 0.03;
 
 }  // namespace
 

@@ -111,6 +111,12 @@ Outcome run(const CutScene& cut, Simulation sim) {
   return outcome;
 }
 
+// The outcome of a scene with these nodes, placed.
+Outcome run_placed(const CutScene& cut, const NodeSet& nodes, const Placement& way) {
+  const CutScene moved = placed(cut, way);
+  return run(moved, simulation_of(moved, placed(nodes, way)));
+}
+
 // Whether two lists of volumes are of the same pieces, but for what depends on the order of sums:
 // which of two faces a cut meets first. Pieces that are smaller than a twentieth of the model in
 // each direction may be in one list alone.
@@ -286,9 +292,8 @@ TEST_CASE("a stroke that grazes the wall of an older cut leaves no specks", "[pl
   const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
   const auto ways = placements();
   for (const std::size_t way : {0, 2, 5}) {
-    const CutScene moved = placed(cut, ways[way]);
-    INFO(moved.about);
-    const Outcome outcome = run(moved, simulation_of(moved, placed(nodes, ways[way])));
+    INFO(ways[way].name);
+    const Outcome outcome = run_placed(cut, nodes, ways[way]);
     CHECK(specks(outcome) == 0);
     CHECK(outcome.crossings == 0);
   }
@@ -301,9 +306,8 @@ TEST_CASE("a stroke across two strokes of one plane cuts all", "[placements]") {
   const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
   const auto ways = placements();
   for (const std::size_t way : {0, 4, 6, 7}) {
-    const CutScene moved = placed(cut, ways[way]);
-    INFO(moved.about);
-    const Outcome outcome = run(moved, simulation_of(moved, placed(nodes, ways[way])));
+    INFO(ways[way].name);
+    const Outcome outcome = run_placed(cut, nodes, ways[way]);
     CHECK(outcome.refused == 0);
     CHECK(outcome.volumes.size() == 4);
     CHECK(outcome.crossings == 0);
@@ -317,9 +321,8 @@ TEST_CASE("a flap that is thinner than a twentieth of a spacing gains no energy"
   const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
   const auto ways = placements();
   for (const std::size_t way : {2, 3, 4}) {
-    const CutScene moved = placed(cut, ways[way]);
-    INFO(moved.about);
-    const Outcome outcome = run(moved, simulation_of(moved, placed(nodes, ways[way])));
+    INFO(ways[way].name);
+    const Outcome outcome = run_placed(cut, nodes, ways[way]);
     CHECK(outcome.volumes.size() > 2);
     CHECK(outcome.gain < 0.05);
     CHECK(outcome.crossings == 0);
@@ -337,9 +340,8 @@ TEST_CASE("pieces that are cut off from below fall, wherever they are", "[placem
     free.scene.self_contact = false;
     const double free_fall = run(free, simulation_of(free, nodes)).fall;
     for (const std::size_t way : {0, 1, 2, 4}) {
-      const CutScene moved = placed(cut, ways[way]);
-      INFO(moved.about);
-      const Outcome outcome = run(moved, simulation_of(moved, placed(nodes, ways[way])));
+      INFO(ways[way].name);
+      const Outcome outcome = run_placed(cut, nodes, ways[way]);
       CHECK(outcome.fall > 0.7 * free_fall);
       CHECK(outcome.gain < 0.05);
       CHECK(outcome.crossings == 0);
@@ -352,9 +354,7 @@ TEST_CASE("pieces that are cut off from below fall, wherever they are", "[placem
 TEST_CASE("a step of which nothing is left but specks is none", "[placements]") {
   const CutScene cut = random_cut_scene(11800000702 / 8);
   const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
-  const Placement way = placements()[6];
-  const CutScene moved = placed(cut, way);
-  const Outcome outcome = run(moved, simulation_of(moved, placed(nodes, way)));
+  const Outcome outcome = run_placed(cut, nodes, placements()[6]);
   CHECK(outcome.crossings == 0);
   CHECK(outcome.volumes[0] > 0.99);
 }

@@ -16,8 +16,10 @@ class ImpulseResponse {
         gap_(gap),
         surface_(surface),
         near_(near),
-        normals_(normals_across_sheets(surface.topology(), surface.fans(), surface.coincidence().coincident,
-                                       surface.coincidence().representative, surface.positions())),
+        normals_(normals_across_sheets(
+            surface.topology(), surface.coincidence().representative,
+            vertex_normals(surface.topology(), surface.fans(), surface.coincidence().coincident, surface.positions()),
+            surface.positions())),
         alone_(CoincidentVertices::all_distinct(surface.positions().size())) {
     for (std::size_t i = 0; i < step.solid.size(); ++i)
       inverse_mass_.push_back(step.fixed.empty() || !step.fixed[i] ? 1 / step.solid.mass(NodeId(i)) : 0);

@@ -53,8 +53,10 @@ class PenaltyAssembly {
   void add_sheet_sides() {
     const auto& [representative, coincident] = surface_.coincidence();
     std::vector<ContactConstraint> sides;
-    const auto normals =
-        normals_across_sheets(surface_.topology(), surface_.fans(), coincident, representative, surface_.positions());
+    const ContactSurface& surface = surface_.topology();
+    const std::vector<Vec3>& positions = surface_.positions();
+    const auto normals = normals_across_sheets(
+        surface, representative, vertex_normals(surface, surface_.fans(), coincident, positions), positions);
     add_sheet_constraints(coincident, in_.free_targets, normals, -candidate_distance * edge_, {in_.dt}, sides);
     add(deepest_constraints(sides, in_.weights, constraints_per_node_pair),
         CoincidentVertices::all_distinct(coincident.size()), in_.targets, 0);

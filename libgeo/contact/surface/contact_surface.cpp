@@ -152,13 +152,10 @@ std::vector<Vec3> wall_normals(const ContactSurface& surface, const std::vector<
 
 }  // namespace
 
-std::vector<Vec3> normals_across_sheets(const ContactSurface& surface, const VertexFans& fans,
-                                        const CoincidentVertices& coincident,
-                                        std::span<const std::uint32_t> representative,
-                                        const std::vector<Vec3>& positions) {
+std::vector<Vec3> normals_across_sheets(const ContactSurface& surface, std::span<const std::uint32_t> representative,
+                                        const std::vector<Vec3>& of_all, const std::vector<Vec3>& positions) {
   std::vector<Vec3> normals = coincident_side_normals(surface, representative, positions);
   const std::vector<Vec3> of_walls = wall_normals(surface, positions);
-  const std::vector<Vec3> of_all = vertex_normals(surface, fans, coincident, positions);
   for (std::size_t v = 0; v < normals.size(); ++v)
     if (normals[v].isZero(0)) normals[v] = of_walls[v].isZero(0) ? of_all[v] : of_walls[v];
   return normals;

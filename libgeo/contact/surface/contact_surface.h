@@ -44,11 +44,9 @@ std::vector<Vec3> coincident_side_normals(const ContactSurface& surface, std::sp
                                           const std::vector<Vec3>& positions);
 /// For each coincident vertex the normal of the sheet that is closed there:
 /// coincident_side_normals() where it is not zero; else the sum of the normals of its triangles on
-/// faces with two sides, each twice the area long; else vertex_normals(). At the rim of a sheet,
-/// triangles of the skin tell nothing of where the other side is.
-std::vector<Vec3> normals_across_sheets(const ContactSurface& surface, const VertexFans& fans,
-                                        const CoincidentVertices& coincident,
-                                        std::span<const std::uint32_t> representative,
-                                        const std::vector<Vec3>& positions);
+/// faces with two sides, each twice the area long; else that in `of_all`, vertex_normals(). At the
+/// rim of a sheet, triangles of the skin tell nothing of where the other side is.
+std::vector<Vec3> normals_across_sheets(const ContactSurface& surface, std::span<const std::uint32_t> representative,
+                                        const std::vector<Vec3>& of_all, const std::vector<Vec3>& positions);
 
 }  // namespace geo

@@ -233,8 +233,8 @@ class SheetOpener {
 std::size_t open_sheets(const ContactSurface& surface, const VertexFans& fans, const Coincidence& coincidence,
                         const std::vector<Vec3>& to, double gap, double opening, std::vector<Vec3>& positions) {
   const auto& [representative, coincident] = coincidence;
-  SheetNormals normals{.all = vertex_normals(surface, fans, coincident, positions),
-                       .across = normals_across_sheets(surface, fans, coincident, representative, positions)};
+  SheetNormals normals{.all = vertex_normals(surface, fans, coincident, positions), .across = {}};
+  normals.across = normals_across_sheets(surface, representative, normals.all, positions);
   const Representatives candidates = find_opening(coincident, normals, to, opening);
   if (candidates.empty()) return 0;
   return candidates.size() - SheetOpener(surface, coincident, std::move(normals), to, gap, positions).run(candidates);

@@ -59,16 +59,6 @@ RigidVelocity correction(const Momenta& before, const Momenta& after) {
   return {c, linear / after.mass, inertia.axes * spin};
 }
 
-// The rigid velocity of a cloud of points. About an axis on which all of them lie it is 0.
-RigidVelocity velocity_of(const Momenta& cloud, double rounding) {
-  const Vec3 centre = cloud.moment / cloud.mass;
-  const Vec3 angular = cloud.angular - centre.cross(cloud.linear);
-  const PrincipalInertia inertia(cloud.inertia -
-                                 cloud.mass * (centre.squaredNorm() * Mat3::Identity() - centre * centre.transpose()));
-  return {centre, cloud.linear / cloud.mass,
-          inertia.axes * inertia.angular_velocity(angular, rounding * inertia.moments[2])};
-}
-
 // A node that has moved: where it was, and its velocity.
 struct MovedNode {
   std::uint32_t node;
@@ -155,44 +145,37 @@ struct BoxMotion {
 std::optional<BoxMotion> motion_of_box(const SolidDiscretisation& before, std::span<const std::uint32_t> nodes,
                                        const State& state) {
   if (nodes.empty()) return {};
-  // A share of the spread, and of the largest moment of inertia, below which nodes do not tell of a
-  // rotation.
-  constexpr double rounding = 1e-12;
-  BoxMotion motion{.centre = Vec3::Zero(),
-                   .translation = Vec3::Zero(),
-                   .rotation = Mat3::Identity(),
-                   .velocity = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   const double share = 1.0 / double(nodes.size());
+  Vec3 centre = Vec3::Zero();
+  Vec3 translation = Vec3::Zero();
   Momenta momenta;
   for (const std::uint32_t i : nodes) {
-    motion.centre += share * before.position[i];
-    motion.translation += share * state.displacement[i];
+    centre += share * before.position[i];
+    translation += share * state.displacement[i];
     momenta.add(1, before.position[i] + state.displacement[i], state.velocity[i]);
   }
-  motion.velocity = velocity_of(momenta, rounding);
+  Mat3 own = Mat3::Zero();
+  Mat3 cross = Mat3::Zero();
+  for (const std::uint32_t i : nodes) {
+    const Vec3 arm = before.position[i] - centre;
+    own += arm * arm.transpose();
+    cross += (arm + state.displacement[i] - translation) * arm.transpose();
+  }
   // Extent across the line over that along it, below which noise decides about the rotation.
   constexpr double flat = 0.1;
-  Mat3 own = Mat3::Zero();
-  for (const std::uint32_t i : nodes) {
-    const Vec3 arm = before.position[i] - motion.centre;
-    own += arm * arm.transpose();
-  }
   const Vec3 extents = Eigen::SelfAdjointEigenSolver<Mat3>(own, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(extents[1] > flat * flat * extents[2])) return {};
+  Momenta still = momenta;
+  still.linear = still.angular = Vec3::Zero();
+  BoxMotion motion{.centre = centre,
+                   .translation = translation,
+                   .rotation = Mat3::Identity(),
+                   .velocity = correction(momenta, still)};
   const Vec3& first = state.displacement[nodes[0]];
-  if (std::all_of(nodes.begin(), nodes.end(), [&](auto i) { return state.displacement[i] == first; })) {
-    motion.translation = first;
-    return motion;
-  }
-  Mat3 cross = Mat3::Zero();
-  double spread = 0;
-  for (const std::uint32_t i : nodes) {
-    const Vec3 arm = before.position[i] - motion.centre;
-    cross += (arm + state.displacement[i] - motion.translation) * arm.transpose();
-    spread += arm.squaredNorm();
-  }
-  // Where nodes leave an axis of rotation open, the least rotation.
-  motion.rotation = nearest_rotation(cross + rounding * spread * Mat3::Identity()).rotation;
+  if (std::all_of(nodes.begin(), nodes.end(), [&](auto i) { return state.displacement[i] == first; }))
+    motion.translation = first;  // to the bit
+  else
+    motion.rotation = nearest_rotation(cross).rotation;
   return motion;
 }
 

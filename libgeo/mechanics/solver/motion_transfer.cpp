@@ -140,7 +140,7 @@ struct BoxMotion {
   Vec3 displacement(const Vec3& x) const { return translation + (rotation - Mat3::Identity()) * (x - centre); }
 };
 
-// That of the nodes in a box, by Kabsch (1976), though they lie in a plane. Empty where they lie
+// That of a component's nodes in a box, by Kabsch (1976), though they lie in a plane. Empty where they lie
 // about on a line: they leave open how the material has turned about it, which Eq. 1 knows.
 std::optional<BoxMotion> motion_of_box(const SolidDiscretisation& before, std::span<const std::uint32_t> nodes,
                                        const State& state) {
@@ -185,20 +185,31 @@ struct HeldNode {
   Vec3 displacement, velocity;
 };
 
+// The nodes of a component in a held box.
+std::vector<std::uint32_t> held_part(const SolidDiscretisation& before, std::uint32_t box, std::uint32_t component) {
+  std::vector<std::uint32_t> nodes = before.held.nodes_in(box, before.position);
+  std::erase_if(nodes, [&](std::uint32_t i) { return before.component[i] != component; });
+  return nodes;
+}
+
 // The motions of new and moved nodes in held boxes: they move as the boxes do. Else held material
-// would be strained between them and the nodes that it had, for as long as it is held.
+// would be strained between them and the nodes that it had, for as long as it is held. A component
+// that hangs on one or two nodes may have turned about them, so each tells its own motion.
 std::vector<HeldNode> motions_in_boxes(const SolidDiscretisation& before, const NodeSet& nodes,
-                                       std::span<const NodeId> updated, const State& state) {
-  std::map<std::uint32_t, std::optional<BoxMotion>> boxes;
+                                       std::span<const NodeId> donors, std::span<const NodeId> updated,
+                                       const State& state) {
+  const std::size_t old_count = before.position.size();
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<BoxMotion>> parts;  // by box and component
   std::vector<HeldNode> motions;
   for (const NodeId id : updated) {
     const std::size_t i = id.index();
-    if (i < before.position.size() && before.position[i] == nodes.position[i]) continue;
+    if (i < old_count && before.position[i] == nodes.position[i]) continue;
     const Vec3& x = nodes.position[i];
     const std::optional<std::uint32_t> box = before.held.rigid_box_at(x);
     if (!box) continue;
-    const auto [known, is_new] = boxes.try_emplace(*box);
-    if (is_new) known->second = motion_of_box(before, before.held.nodes_in(*box, before.position), state);
+    const std::uint32_t component = before.component[old_donor(i, old_count, donors)];
+    const auto [known, is_new] = parts.try_emplace({*box, component});
+    if (is_new) known->second = motion_of_box(before, held_part(before, *box, component), state);
     if (!known->second) continue;
     const BoxMotion& motion = *known->second;
     const Vec3 displacement = motion.displacement(x);
@@ -291,7 +302,7 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
   const std::vector<double> mass_before = mass;
   const std::vector<Mat3> rotations = rotations_before(*this, old_count, donors, updated, state);
   if (!state.displacement.empty()) {
-    const std::vector<HeldNode> held_nodes = motions_in_boxes(*this, nodes, updated, state);
+    const std::vector<HeldNode> held_nodes = motions_in_boxes(*this, nodes, donors, updated, state);
     moved = extend_motion(*this, nodes, old_count, donors, updated, state);
     for (const HeldNode& m : held_nodes) {
       state.displacement[m.node] = m.displacement;

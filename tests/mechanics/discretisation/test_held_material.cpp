@@ -231,6 +231,43 @@ TEST_CASE("nodes that are new in a held box with a layer of nodes move with it",
   CHECK(inside > 20);
 }
 
+// A part that hangs on its corner in a held box may turn about it, while the other part of the box
+// stands. Each is cut again, and its new nodes move as it does.
+TEST_CASE("nodes that are new in a held box move with their own part of the body", "[held]") {
+  const Seeds all = seeds(40);
+  std::size_t inside = 0;
+  for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Body body = block_body({1.6, 0.8, 0.7}, 0.15);
+    Solid solid(body, soft());
+    const double parted = random.uniform(0.9, 1.2);
+    const std::vector<HeldBox> boxes{{{-1, -1, 0.5}, {parted + random.uniform(0.02, 0.3), 2, 2}, true}};
+    solid.hold(body, boxes);
+    State state{std::vector<Vec3>(body.nodes.size(), Vec3::Zero()), std::vector<Vec3>(body.nodes.size(), Vec3::Zero())};
+    auto parting = begin_front(blade_at({parted, -0.2, 0.9}, {parted, 1.0, 0.9}, {0, 0, -0.3}, 0, 3), false, 1);
+    for (int k = 1; k <= 4; ++k)
+      solid.update_nodes(
+          body, split(body, parting, blade_at({parted, -0.2, 0.9}, {parted, 1.0, 0.9}, {0, 0, -0.3}, k, 3)), state);
+    const Mat3 turn = Eigen::AngleAxisd(0.9, random.direction()).toRotationMatrix();
+    const Vec3 corner(parted, random.uniform(0, 0.8), 0.7);
+    const auto expected = [&](const Vec3& x) -> Vec3 {
+      return x.x() < parted ? Vec3(Vec3::Zero()) : Vec3((turn - Mat3::Identity()) * (x - corner));
+    };
+    for (std::size_t i = 0; i < body.nodes.size(); ++i) state.displacement[i] = expected(body.nodes.position[i]);
+    const std::size_t before = body.nodes.size();
+    const Vec3 a(-0.2, random.uniform(0.2, 0.6), 0.9), b(1.8, random.uniform(0.2, 0.6), 0.9), step(0, 0, -0.25);
+    auto front = begin_front(blade_at(a, b, step, 0, 3), false, 2);
+    for (int k = 1; k <= 4; ++k) solid.update_nodes(body, split(body, front, blade_at(a, b, step, k, 3)), state);
+    for (std::size_t i = before; i < body.nodes.size(); ++i)
+      if (const Vec3& x = body.nodes.position[i]; holds(boxes[0], x)) {
+        inside += x.x() > parted;
+        CHECK((state.displacement[i] - expected(x)).norm() < 1e-9);
+      }
+  }
+  CHECK(inside > 20);
+}
+
 TEST_CASE("material that is cut off beside a held box is free", "[held]") {
   Body body = block_body({1, 1, 1}, 0.13);
   const double face = 0.4;

@@ -22,10 +22,16 @@
 namespace geo {
 namespace {
 
-// The vertices of K on the segment from a to b, in order, if edges of K join them to a and b; else
-// none.
+// Whether a vertex of K is on the sheet of a crack.
+bool is_on_crack(const Complex& complex, VertexId v, std::int32_t crack) {
+  const auto faces = complex.faces_at(v);
+  return std::any_of(faces.begin(), faces.end(), [&](FaceId f) { return complex.face(f).crack == crack; });
+}
+
+// The vertices of K on a segment of a front from a to b, in order, if edges of K join them to each
+// other, and to a and b where these are in K; else none. An end in the air is joined to none.
 std::vector<VertexId> vertices_between(const Complex& complex, const FrontState::Point& a, const FrontState::Point& b,
-                                       double tolerance) {
+                                       std::int32_t crack, double tolerance) {
   const Vec3 along = b.position - a.position;
   const double length = along.squaredNorm();
   std::vector<FaceId> near;
@@ -44,15 +50,17 @@ std::vector<VertexId> vertices_between(const Complex& complex, const FrontState:
   std::vector<VertexId> chain;
   VertexId last = a.id;
   for (const auto& [t, v] : between) {
-    if (complex.faces_around(last, v).empty()) return {};
+    const bool is_joined = last.valid() ? !complex.faces_around(last, v).empty() : is_on_crack(complex, v, crack);
+    if (!is_joined) return {};
     chain.push_back(last = v);
   }
-  if (complex.faces_around(last, b.id).empty()) return {};
+  if (b.id.valid() && last.valid() && complex.faces_around(last, b.id).empty()) return {};
   return chain;
 }
 
-// Another crack may have divided the front's edges since the last step. Consecutive contacts that
-// no edge of K joins are joined through the vertices that now lie between them.
+// Another crack, or the front itself where it folds, may have divided the front's edges since the
+// last step. Consecutive contacts that no edge of K joins are joined through the vertices that now
+// lie between them; and so are a contact and a point in the air.
 void update_contacts(FrontState& front, const Complex& complex) {
   // Far above rounding (2⁻⁵² ≈ 2e-16), far below a front segment. Vertices found count only where
   // edges of K join them.
@@ -61,8 +69,12 @@ void update_contacts(FrontState& front, const Complex& complex) {
     std::vector<FrontState::Point> updated{segment.front()};
     for (std::size_t i = 1; i < segment.size(); ++i) {
       const auto &a = segment[i - 1], &b = segment[i];
-      if (a.id.valid() && b.id.valid() && a.id != b.id && complex.faces_around(a.id, b.id).empty())
-        for (const VertexId v : vertices_between(complex, a, b, tolerance)) updated.push_back({complex.point(v), v});
+      const bool are_in_k = a.id.valid() && b.id.valid();
+      const bool may_lack = are_in_k ? a.id != b.id && complex.faces_around(a.id, b.id).empty()
+                                     : front.has_moved && a.position != b.position;
+      if (may_lack)
+        for (const VertexId v : vertices_between(complex, a, b, front.crack, tolerance))
+          updated.push_back({complex.point(v), v});
       updated.push_back(b);
     }
     segment = std::move(updated);

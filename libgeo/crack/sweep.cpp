@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "crack/index_map.h"
@@ -35,14 +36,63 @@ class StripBuilder {
     if (fixed) strip.fixed[index] = true;
     return index;
   }
-  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::array<int, 3> segment) {
-    if (a == b || b == c || c == a || collinear(strip.points[a], strip.points[b], strip.points[c])) return;
+  // Returns whether it has an area, and is in the strip.
+  bool triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::array<int, 3> segment) {
+    if (a == b || b == c || c == a || collinear(strip.points[a], strip.points[b], strip.points[c])) return false;
     strip.triangles.push_back({{a, b, c}, segment});
+    return true;
   }
 
  private:
   PointMap indices_;
 };
+
+using Ends = std::pair<std::uint32_t, std::uint32_t>;
+
+// The triangles of segment i, whose points are p and q in its next position, and stand or not.
+// Returns whether one has the new segment as a side.
+bool add_triangles(StripBuilder& builder, const std::vector<std::uint32_t>& old, Ends next, int segment) {
+  const auto [p, q] = next;
+  const bool stands_q = old.back() == q;
+  bool has_side = false;
+  if (old.front() == p) {
+    // A fan around q; its first side is the new front.
+    for (std::size_t k = 0; k + 1 < old.size(); ++k) {
+      const bool is_added = builder.triangle(old[k], old[k + 1], q, {-1, -1, k == 0 ? segment : -1});
+      has_side = has_side || (is_added && k == 0);
+    }
+    return has_side;
+  }
+  // A fan around p, closed by the triangle that holds the new front (nothing when q stands still:
+  // the fan's last side).
+  for (std::size_t k = 0; k + 1 < old.size(); ++k) {
+    const bool is_last = stands_q && k + 2 == old.size();
+    const bool is_added = builder.triangle(old[k], old[k + 1], p, {-1, is_last ? segment : -1, -1});
+    has_side = has_side || (is_added && is_last);
+  }
+  if (stands_q) return has_side;
+  return builder.triangle(old.back(), q, p, {-1, segment, -1});
+}
+
+// Segments of the new front that are no side of their own triangles, as where two points were at
+// one place and only one moves. They are sides of those beside them: else the front would not know
+// the vertices of K on it. `segments`: their numbers and points.
+void mark_sides(Strip& strip, const std::vector<std::pair<int, Ends>>& segments) {
+  if (segments.empty()) return;
+  std::map<Ends, std::pair<std::size_t, std::size_t>> side_of;  // by its points, in order: triangle and side
+  for (std::size_t t = 0; t < strip.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(strip.triangles[t].p[k], strip.triangles[t].p[(k + 1) % 3]);
+      if (strip.triangles[t].segment[k] < 0) side_of.try_emplace({a, b}, t, k);
+    }
+  for (const auto& [segment, ends] : segments) {
+    const auto [a, b] = std::minmax(ends.first, ends.second);
+    const auto found = side_of.find({a, b});
+    if (found == side_of.end()) continue;
+    strip.triangles[found->second.first].segment[found->second.second] = segment;
+    side_of.erase(found);
+  }
+}
 
 }  // namespace
 
@@ -58,6 +108,7 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
   builder.strip.new_front.assign(next.begin(), next.end());
   for (const auto& segment : front.segments)
     for (const auto& p : segment) builder.point(p.position, true);
+  std::vector<std::pair<int, Ends>> without_side;
   for (std::size_t i = 0; i < front.segments.size(); ++i) {
     std::vector<std::uint32_t> old;
     for (const auto& p : front.segments[i]) {
@@ -66,22 +117,13 @@ Strip sweep(const FrontState& front, std::span<const Vec3> next) {
     }
     if (front.has_moved)
       for (std::size_t k = 0; k + 1 < old.size(); ++k) builder.strip.old_front.emplace_back(old[k], old[k + 1]);
-    const auto p = builder.point(next[i], false), q = builder.point(next[(i + 1) % next.size()], false);
-    const int s = static_cast<int>(i);
-    const bool stands_p = old.front() == p, stands_q = old.back() == q;
-    if (stands_p && stands_q) continue;
-    if (stands_p) {
-      // A fan around q; its first side is the new front.
-      for (std::size_t k = 0; k + 1 < old.size(); ++k)
-        builder.triangle(old[k], old[k + 1], q, {-1, -1, k == 0 ? s : -1});
-      continue;
-    }
-    // A fan around p, closed by the triangle that holds the new front (nothing when q stands still:
-    // the fan's last side).
-    for (std::size_t k = 0; k + 1 < old.size(); ++k)
-      builder.triangle(old[k], old[k + 1], p, {-1, stands_q && k + 2 == old.size() ? s : -1, -1});
-    if (!stands_q) builder.triangle(old.back(), q, p, {-1, s, -1});
+    const Ends ends{builder.point(next[i], false), builder.point(next[(i + 1) % next.size()], false)};
+    if (old.front() == ends.first && old.back() == ends.second) continue;
+    const int segment = static_cast<int>(i);
+    if (!add_triangles(builder, old, ends, segment) && ends.first != ends.second)
+      without_side.push_back({segment, ends});
   }
+  mark_sides(builder.strip, without_side);
   return std::move(builder.strip);
 }
 

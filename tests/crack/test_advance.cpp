@@ -174,6 +174,73 @@ TEST_CASE("random curved cuts, partial and complete, keep every invariant") {
 
 namespace {
 
+// Whether a living vertex of K is between two consecutive entries of a segment that has moved, which
+// lists the vertices of K on it. `before`: where the front's points were.
+bool lacks_contacts(const Complex& k, const FrontState& front, const std::vector<FrontState::Point>& before) {
+  const double tolerance = 1e-12 * k.extent().diagonal();
+  for (std::size_t s = 0; s < front.segments.size(); ++s) {
+    const auto& segment = front.segments[s];
+    if (segment.front().position == before[s].position && segment.back().position == before[s + 1].position) continue;
+    for (std::size_t i = 1; i < segment.size(); ++i) {
+      const Vec3 &a = segment[i - 1].position, &b = segment[i].position;
+      if (a == b) continue;
+      std::vector<FaceId> near;
+      k.faces_near(box_of(a, b, b).grown(tolerance), near);
+      for (const FaceId f : near)
+        for (const VertexId v : k.face(f).v) {
+          if (v == segment[i - 1].id || v == segment[i].id) continue;
+          const Vec3 along = b - a, w = k.point(v) - a;
+          const double t = w.dot(along) / along.squaredNorm();
+          if (t > 0 && t < 1 && (w - t * along).norm() < tolerance) return true;
+        }
+    }
+  }
+  return false;
+}
+
+// A copy of point i beside it, and a segment without length between the two.
+void duplicate_point(FrontState& front, std::size_t i) {
+  const FrontState::Point p = front.points[i];
+  front.points.insert(front.points.begin() + static_cast<std::ptrdiff_t>(i), p);
+  front.segments.insert(front.segments.begin() + static_cast<std::ptrdiff_t>(i), {p, p});
+}
+
+}  // namespace
+
+// Points stand, move on, or part from one that they were at, through the skin or inside.
+TEST_CASE("a front knows each vertex of the complex that is on it") {
+  const Seeds all = seeds(100);
+  std::size_t refused = 0, steps = 0;
+  for (std::uint64_t seed = all.first; seed < all.first + static_cast<std::uint64_t>(all.count); ++seed) {
+    INFO("KERF_CASE=" << seed);
+    Random random(seed);
+    Complex k = Complex::from_skin(make_block({4, 4, 4}, 1));
+    const double height = random.uniform(1.05, 2.95);
+    FrontState front = begin_front(line({-0.3, 0.7, height}, {-0.3, 4.6, height}, 4), false, 1);
+    for (int s = 0; s < 6; ++s) {
+      if (random.below(2) == 0) duplicate_point(front, random.below(static_cast<std::uint32_t>(front.points.size())));
+      std::vector<Vec3> next;
+      for (const auto& p : front.points) {
+        const Vec3 by(random.uniform(0.1, 1.0), random.uniform(-0.3, 0.3), random.uniform(-0.1, 0.1));
+        next.push_back(random.below(3) == 0 ? p.position : Vec3(p.position + by));
+      }
+      const std::vector<FrontState::Point> before = front.points;
+      ++steps;
+      try {
+        advance(k, front, next);
+      } catch (const GeometryError&) {
+        ++refused;
+        continue;
+      }
+      REQUIRE(!lacks_contacts(k, front, before));
+    }
+    require_sound(k, 64);
+  }
+  CHECK(refused * 100 <= steps);
+}
+
+namespace {
+
 // Compares all that two complexes have, dead ids included.
 void require_same(const Complex& a, const Complex& b) {
   REQUIRE(a.vertex_count() == b.vertex_count());

@@ -88,7 +88,10 @@ std::vector<std::vector<EdgePoint>> BladeCuts::map_edge(const MovedBody& moved, 
     fronts = fronts_of(runs, fronts, body_.surface);
   }
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (!fronts[r].at.empty()) continue;
+    if (!fronts[r].at.empty()) {
+      if (!blade.closed) fronts[r] = grown(std::move(fronts[r]), entering(moved, blade, before, runs[r], fronts[r]));
+      continue;
+    }
     const std::vector<EdgePoint> begin = begin_of_run(moved, blade, before, runs[r], fronts);
     fronts[r] = begin_edge(begin, next_crack(body_.surface, state_), blade.name, blade.closed);
   }

@@ -22,6 +22,21 @@ void duplicate_point(EdgeFront& edge, std::size_t k, bool before, double at) {
   edge.at.insert(edge.at.begin() + index, at);
 }
 
+// The points of an edge, from the end of a front outwards, that do not go back: in the gap between
+// two pieces, the map is that of either, beyond its wall.
+std::vector<EdgePoint> unfolded(const Vec3& end, std::vector<EdgePoint> points) {
+  if (points.empty()) return points;
+  const Vec3 way = points.back().material - end;
+  Vec3 last = end;
+  std::vector<EdgePoint> onwards;
+  for (const EdgePoint& p : points) {
+    if (!((p.material - last).dot(way) > 0)) continue;
+    onwards.push_back(p);
+    last = p.material;
+  }
+  return onwards;
+}
+
 }  // namespace
 
 EdgeFront begin_edge(std::span<const EdgePoint> points, std::int32_t crack, const std::string& name, bool closed) {
@@ -142,6 +157,23 @@ EdgeFront joined(EdgeFront a, const EdgeFront& b) {
   a.front.step = std::max(a.front.step, b.front.step);
   a.at.insert(a.at.end(), b.at.begin(), b.at.end());
   return a;
+}
+
+EdgeFront grown(EdgeFront edge, std::span<const EdgePoint> points) {
+  std::vector<EdgePoint> below, above;  // from the front outwards
+  for (const EdgePoint& p : points) {
+    if (p.at < edge.at.front()) below.insert(below.begin(), p);
+    if (p.at > edge.at.back()) above.push_back(p);
+  }
+  below = unfolded(edge.front.points.front().position, std::move(below));
+  above = unfolded(edge.front.points.back().position, std::move(above));
+  std::reverse(below.begin(), below.end());
+  const auto front_of = [&](const std::vector<EdgePoint>& part) {
+    return begin_edge(part, edge.front.crack, edge.front.name, false);
+  };
+  if (below.size() >= 2) edge = joined(front_of(below), edge);
+  if (above.size() >= 2) edge = joined(std::move(edge), front_of(above));
+  return edge;
 }
 
 }  // namespace geo

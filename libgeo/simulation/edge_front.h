@@ -66,5 +66,8 @@ void collapse(EdgeFront& edge, std::span<const EdgePoint> next);
 EdgeFront part_of(const EdgeFront& edge, double from, double to);
 /// One front of two, the parameters of `a` below those of `b`; it keeps the crack number of `a`.
 EdgeFront joined(EdgeFront a, const EdgeFront& b);
+/// A front with further points at its ends, where its edge has come from air: those of `points`,
+/// ascending in parameter, beyond the front. An end that gets a single one stays.
+EdgeFront grown(EdgeFront edge, std::span<const EdgePoint> points);
 
 }  // namespace geo

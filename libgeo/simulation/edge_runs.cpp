@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "body/locate.h"
+#include "geometry/predicates.h"
 #include "kerf/parallel.h"
 #include "simulation/existing_cuts.h"
 #include "simulation/mapped_places.h"
@@ -31,7 +32,9 @@ struct Sample {
   MappedPlace place;       // that `material` is outside of
   bool within = false;     // the support of a node
   bool is_in_cut = false;  // one that exists, and no front there can go on
+  bool is_beyond = false;  // a wall of it: in the air between pieces, by the map of one of them
   bool is_held = false;    // by a front that can go on
+  bool is_dropped = false;
   double spacing = 0;
   NodeId node;                                           // the nearest
   double gap = std::numeric_limits<double>::infinity();  // distance to the nearest node, less its support radius
@@ -67,7 +70,8 @@ class EdgeSampler {
           (s.material - body_.nodes.position[place.nearest.index()]).norm() - body_.nodes.radius[place.nearest.index()];
     }
     s.is_held = s.within && cuts_.can_go_on(parameter);
-    s.is_in_cut = s.within && !s.is_held && cuts_.contain(s.material, s.spacing);
+    s.is_beyond = s.within && !s.is_held && is_behind_wall(s);
+    s.is_in_cut = s.is_beyond || (s.within && !s.is_held && cuts_.contain(s.material, s.spacing));
     return s;
   }
 
@@ -95,6 +99,20 @@ class EdgeSampler {
   }
 
  private:
+  // Whether a wall of a cut lies between the place of a sample and the node that its map is of. The
+  // motion of a piece is extended into the air beside it, where other pieces were at rest.
+  bool is_behind_wall(const Sample& s) const {
+    if (!s.node.valid()) return false;
+    const Vec3& from = body_.nodes.position[s.node.index()];
+    std::vector<FaceId> near;
+    body_.surface.faces_near(box_of(from, s.material, s.material), near);
+    return std::any_of(near.begin(), near.end(), [&](FaceId f) {
+      if (body_.surface.face(f).crack == 0) return false;
+      const auto [a, b, c] = body_.surface.corners(f);
+      return segment_meets_triangle(from, s.material, a, b, c);
+    });
+  }
+
   // Whether a cut may lie between two samples that are in none.
   bool passes_cut(const Sample& a, const Sample& b, double length, double spacing) const {
     return length > longest_beside_cut * spacing && cuts_.may_contain_between(a.material, b.material, spacing);
@@ -186,7 +204,10 @@ class CutLeaver {
       const bool whole_before = first > 0 && is_whole(first - 1);
       const bool whole_after = last + 1 < samples_.size() && is_whole(last + 1);
       const double length = (samples_[last].material - samples_[first].material).norm();
-      if ((whole_before || whole_after) && length < samples_[first].spacing) continue;
+      if ((whole_before || whole_after) && length < samples_[first].spacing) {
+        cross(first, last);
+        continue;
+      }
       for (std::size_t i = first; i <= last; ++i)
         samples_[i].within = (i == first && whole_before) || (i == last && whole_after);
       if (last == first + 1) is_end[last] = 1;
@@ -199,6 +220,12 @@ class CutLeaver {
  private:
   bool is_whole(std::size_t i) const {
     return samples_[i].within && !samples_[i].is_in_cut && is_inside(surface_, samples_[i].material);
+  }
+
+  // An edge that crosses the gap between two pieces goes from wall to wall: between them, the map is
+  // that of either piece, beyond its wall.
+  void cross(std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i <= last; ++i) samples_[i].is_dropped = samples_[i].is_beyond;
   }
 
   // Takes out the samples in air beside sample `from`, up to the last one before whole material, or
@@ -301,6 +328,7 @@ std::vector<std::vector<EdgePoint>> edge_runs(const InverseDeformation& map, con
   std::vector<std::vector<EdgePoint>> runs;
   const Sample* last = nullptr;
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i].is_dropped) continue;
     if (!samples[i].within) {
       last = nullptr;
       continue;

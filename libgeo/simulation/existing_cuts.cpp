@@ -180,6 +180,23 @@ std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, 
   return begin;
 }
 
+std::vector<EdgePoint> entering(const MovedBody& moved, const Blade& blade, double before,
+                                std::span<const EdgePoint> run, const EdgeFront& edge) {
+  std::vector<EdgePoint> points;
+  if (run.front().at >= edge.at.front() && run.back().at <= edge.at.back()) return points;
+  const MapAt start(moved, blade, before);
+  InverseDeformation::VertexCache memory;
+  for (const EdgePoint& p : run) {
+    if (p.at >= edge.at.front() && p.at <= edge.at.back()) continue;
+    const auto place = start.map().to_material(start.pose() * place_on(blade, p.at), memory, &p.material);
+    if (!place.in_support || is_inside(moved.body.surface, place.position)) continue;
+    EdgePoint begin = p;
+    begin.material = place.position;
+    points.push_back(begin);
+  }
+  return points;
+}
+
 void cross_first(const Complex& surface, const FrontState& front, std::span<const double> spacing,
                  std::vector<Vec3>& to) {
   if (front.has_moved || surface.crack_count() == 0) return;

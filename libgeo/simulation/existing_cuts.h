@@ -56,6 +56,11 @@ class ExistingCuts {
 std::vector<EdgePoint> begin_of_run(const MovedBody& moved, const Blade& blade, double before,
                                     std::span<const EdgePoint> run, std::span<const EdgeFront> fronts);
 
+/// The points of a run beyond the parameters of its front that were in air at the fraction `before`
+/// of the time step, where they were then: the edge enters the body there.
+std::vector<EdgePoint> entering(const MovedBody& moved, const Blade& blade, double before,
+                                std::span<const EdgePoint> run, const EdgeFront& edge);
+
 /// Makes the first step of a front that begins in a cut cross the sheet, behind its border. So the
 /// next step, which passes the border on the other side, leaves no bridge: sheets that only touch,
 /// but for rounding, need not meet. Changes `to` where the front begins in a cut. `spacing`: of

@@ -314,6 +314,22 @@ TEST_CASE("a stroke across two strokes of one plane cuts all", "[placements]") {
   }
 }
 
+// The third stroke crosses the gap between pieces that fall at several metres a second. In the gap,
+// each piece's map goes on beyond its wall, where the other piece was at rest; and the upper pieces
+// are met a step later than the lower ones. One placement leaves a hair at the first contact.
+TEST_CASE("a stroke across the gap between pieces parts all of them", "[placements]") {
+  const CutScene cut = random_cut_scene(12000000018 / 8);
+  const NodeSet nodes = begin_run(cut.scene, cut.models).body.nodes;
+  const auto ways = placements();
+  for (const std::size_t way : {0, 2, 3}) {
+    INFO(ways[way].name);
+    const Outcome outcome = run_placed(cut, nodes, ways[way]);
+    CHECK(outcome.volumes.size() >= (way == 2 ? 7 : 8));
+    CHECK(outcome.refused == 0);
+    CHECK(outcome.crossings == 0);
+  }
+}
+
 // The second stroke takes a flap off, a twenty-fifth of a spacing thick and as wide as the ball. It
 // has nodes where its walls are too near for two heights, too: two at one end do not carry it.
 TEST_CASE("a flap that is thinner than a twentieth of a spacing gains no energy", "[placements]") {

@@ -222,8 +222,8 @@ class CutLeaver {
     return samples_[i].within && !samples_[i].is_in_cut && is_inside(surface_, samples_[i].material);
   }
 
-  // An edge that crosses the gap between two pieces goes from wall to wall: between them, the map is
-  // that of either piece, beyond its wall.
+  // An edge that crosses the gap between two pieces goes from wall to wall: between them, the map
+  // is that of either piece, beyond its wall.
   void cross(std::size_t first, std::size_t last) {
     for (std::size_t i = first; i <= last; ++i) samples_[i].is_dropped = samples_[i].is_beyond;
   }

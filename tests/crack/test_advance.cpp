@@ -174,8 +174,8 @@ TEST_CASE("random curved cuts, partial and complete, keep every invariant") {
 
 namespace {
 
-// Whether a living vertex of K is between two consecutive entries of a segment that has moved, which
-// lists the vertices of K on it. `before`: where the front's points were.
+// Whether a living vertex of K is between two consecutive entries of a segment that has moved,
+// which lists the vertices of K on it. `before`: where the front's points were.
 bool lacks_contacts(const Complex& k, const FrontState& front, const std::vector<FrontState::Point>& before) {
   const double tolerance = 1e-12 * k.extent().diagonal();
   for (std::size_t s = 0; s < front.segments.size(); ++s) {

@@ -1,6 +1,6 @@
 // Random scenes, as anybody may write them: models, materials, loads, strokes and steps. Nothing
 // crosses, the complex stays valid, and no energy comes from nothing.
-// A campaign: KERF_CASES=100 KERF_SEED=3 test_simulation '[random-scenes]'; KERF_TELL=1 prints each.
+// A campaign: KERF_CASES=100 KERF_SEED=3 test_simulation "[random-scenes]"; KERF_TELL=1 tells of each
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
@@ -23,9 +23,9 @@ using namespace geo;
 
 namespace {
 
-// Bodies that strike store energy in their contact, which no figure of a frame has, and give it back:
-// up to half of all (0.53 of the largest in 200 scenes). Where energy comes from nothing, nearly all
-// of the largest is the rise.
+// Bodies that strike store energy in their contact, which no figure of a frame has, and give it
+// back: up to half of all (0.53 of the largest in 200 scenes). Where energy comes from nothing,
+// nearly all of the largest is the rise.
 constexpr double most_stored = 0.75;
 constexpr double least_energy = 1e-9;  // over the modulus, m³: scenes at rest have none but of rounding
 
@@ -55,7 +55,8 @@ TriangleMesh unit_large(TriangleMesh mesh) {
   return mesh;
 }
 
-// About a unit large: a scanned model, a block, a bar, a slab or a ball, bent, stretched and turned.
+// About a unit large: a scanned model, a block, a bar, a slab or a ball, bent, stretched and
+// turned.
 TriangleMesh random_model(Random& random, std::string& about) {
   const char* shapes[] = {"block", "bar", "slab", "ball", "egg", "bear", "pumpkin", "femur"};
   const std::uint32_t shape = random.below(8);

@@ -140,8 +140,9 @@ struct BoxMotion {
   Vec3 displacement(const Vec3& x) const { return translation + (rotation - Mat3::Identity()) * (x - centre); }
 };
 
-// That of a component's nodes in a box, by Kabsch (1976), though they lie in a plane. Empty where they lie
-// about on a line: they leave open how the material has turned about it, which Eq. 1 knows.
+// That of a component's nodes in a box, by Kabsch (1976), though they lie in a plane. Empty where
+// they lie about on a line: they leave open how the material has turned about it, which Eq. 1
+// knows.
 std::optional<BoxMotion> motion_of_box(const SolidDiscretisation& before, std::span<const std::uint32_t> nodes,
                                        const State& state) {
   if (nodes.empty()) return {};

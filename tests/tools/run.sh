@@ -911,6 +911,9 @@ scene)
   # most: elastic energy, J; less than weight times the way that it falls
   case $scene in
   apple) young=3e5 pieces=1 most=3e3 moves=0.3 set="--set body.mesh=models/apple.ply --set body.nodes=600 --set time.accuracy=0.001" ;;  # so few nodes make a stiff peel: it slides, slowly
+  peeled) young=3e5 pieces=2 most=3e3 moves=0.3 frames=72 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;  # to the end of the spiral
+  collapse) young=1e5 pieces=4 most=2e3 moves=0.3 set="--set body.mesh=models/jello.ply --set body.nodes=300" ;;
+  sliced) young=4e5 pieces=8 most=1e3 moves=0.3 frames=56 set="--set body.mesh=models/polyp.ply" ;;  # all ten strokes
   apple-clamped) young=3e5 pieces=1 most=3e3 moves=0.3 set="--set body.mesh=models/apple.ply --set body.nodes=600" ;;  # it bends off
   jello) young=2e5 pieces=4 most=1e3 soft=yes set="--set body.mesh=models/jello.ply --set body.nodes=300" ;;
   polyp) young=4e5 pieces=2 most=5e2 set="--set body.mesh=models/polyp.ply --set body.nodes=150" ;;

@@ -238,6 +238,30 @@ void read_pull(TomlTable& t, Scene& s, Files& files) {
   s.pulls.push_back(std::move(pull));
 }
 
+void read_stitch_end(TomlTable& t, Stitch::End& end, const std::string& which) {
+  const std::string point = "point_" + which;
+  if (!t.find(point)) t.missing(point, "which it holds");
+  t.get(point, end.point);
+  int node = -1;
+  t.get("node_" + which, node, 0, 2147483647);
+  if (node >= 0) end.node = static_cast<std::uint32_t>(node);
+}
+
+void read_stitch(TomlTable& t, Scene& s) {
+  Stitch stitch;
+  read_stitch_end(t, stitch.ends[0], "a");
+  read_stitch_end(t, stitch.ends[1], "b");
+  t.get("stiffness", stitch.stiffness, 0, 1e15);
+  t.get("length", stitch.length, 0, 1e9);
+  double slack = -1;
+  t.get("slack", slack, 0, 1e9);
+  if (slack >= 0) stitch.slack = slack;
+  t.get("closing", stitch.closing, 0, 1e9);
+  t.get("from", stitch.from, -1e9, 1e9);
+  t.get("until", stitch.until, -1e9, 1e9);
+  s.stitches.push_back(stitch);
+}
+
 void read_blow(TomlTable& t, Scene& s) {
   Blow blow;
   if (!t.find("point")) t.missing("point", "where it hits, in the world");
@@ -429,6 +453,7 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
   });
   top.list("blade", [&](TomlTable& t) { read_blade(t, s, files); });
   top.list("pull", [&](TomlTable& t) { read_pull(t, s, files); });
+  top.list("stitch", [&](TomlTable& t) { read_stitch(t, s); });
   top.list("blow", [&](TomlTable& t) { read_blow(t, s); });
   top.list("load", [&](TomlTable& t) { read_load(t, s); });
   top.list("support", [&](TomlTable& t) { read_support(t, s, files); });

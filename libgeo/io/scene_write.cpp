@@ -76,6 +76,7 @@ class SceneWriter {
   void grip(const Grip& g);
   void blade(const Blade& b);
   void pull(const Pull& p);
+  void stitch(const Stitch& s);
   void blow(const Blow& b);
   void load(const Load& l);
   void support(const Support& s);
@@ -213,6 +214,20 @@ void SceneWriter::pull(const Pull& p) {
   keys(p.motion);
 }
 
+void SceneWriter::stitch(const Stitch& s) {
+  table("[[stitch]]");
+  key("point_a", s.ends[0].point);
+  if (s.ends[0].node) whole("node_a", *s.ends[0].node);
+  key("point_b", s.ends[1].point);
+  if (s.ends[1].node) whole("node_b", *s.ends[1].node);
+  key("stiffness", s.stiffness);
+  key("length", s.length);
+  if (s.slack) key("slack", *s.slack);
+  key("closing", s.closing);
+  key("from", s.from);
+  if (std::isfinite(s.until)) key("until", s.until);
+}
+
 void SceneWriter::blow(const Blow& b) {
   table("[[blow]]");
   key("time", b.time);
@@ -316,6 +331,7 @@ void SceneWriter::write(const Scene& s) {
   for (const SceneObstacle& o : s.obstacles) obstacle(o);
   for (const Blade& b : s.blades) blade(b);
   for (const Pull& p : s.pulls) pull(p);
+  for (const Stitch& stitch : s.stitches) this->stitch(stitch);
   for (const Blow& b : s.blows) blow(b);
   for (const Load& l : s.loads) load(l);
   for (const Support& support : s.supports) this->support(support);

@@ -1,5 +1,5 @@
 // Grips come first: nodes that they hold are where they will be at the step's end. Potentials
-// follow in a fixed order, wedges before pulls.
+// follow in a fixed order: wedges, pulls, stitches.
 #include "simulation/node_loads.h"
 
 namespace geo {
@@ -16,6 +16,7 @@ void NodeLoads::follow_scene() {
 void NodeLoads::follow_crack() {
   is_behind_ = true;
   pulls_.invalidate();
+  stitches_.invalidate();
 }
 
 void NodeLoads::begin_step(const TimeStep& step, const Solid& solid, State& motion) {
@@ -24,8 +25,10 @@ void NodeLoads::begin_step(const TimeStep& step, const Solid& solid, State& moti
   environment_.contact.clear();
   add_wedges(step, solid, motion);
   pulls_.begin_step(scene_.pulls, body_, solid, step.begin, step.end);
+  stitches_.begin_step(scene_.stitches, body_, solid, step.begin, step.end);
   if (!wedges_.empty()) environment_.contact.push_back(&wedges_);
   if (!pulls_.empty()) environment_.contact.push_back(&pulls_);
+  if (!stitches_.empty()) environment_.contact.push_back(&stitches_);
 }
 
 // The wedges of thick blades are where their cut is: the edge cuts on at the end of the step.
@@ -60,9 +63,13 @@ void NodeLoads::end_step(const TimeStep& step, double share, State& motion, Fram
   const auto on_blades = wedges_.reaction(motion.displacement, scene_.blades.size());
   for (std::size_t b = 0; b < on_blades.size(); ++b) stats.blade_force[b] += share * on_blades[b];
   stats.pull_force.resize(scene_.pulls.size(), Vec3::Zero());
+  stats.stitch_force.resize(scene_.stitches.size(), 0);
   stats.work += pulls_.work(motion.displacement) + wedges_.work(motion.displacement);
+  stats.work += stitches_.work(motion.displacement);
   const auto on_pulls = pulls_.reaction(motion.displacement, scene_.pulls.size());
   for (std::size_t p = 0; p < on_pulls.size(); ++p) stats.pull_force[p] += share * on_pulls[p];
+  const auto tension = stitches_.tension(motion.displacement, scene_.stitches.size());
+  for (std::size_t t = 0; t < tension.size(); ++t) stats.stitch_force[t] += share * tension[t];
 }
 
 }  // namespace geo

@@ -1,5 +1,5 @@
 // Loads on the nodes in a time step, except contact of surfaces: weight, grips, the wedges of
-// blades, pulls.
+// blades, pulls, stitches.
 #pragma once
 
 #include "contact/response/blade_penalty.h"
@@ -9,6 +9,7 @@
 #include "kerf/solid.h"
 #include "simulation/grips.h"
 #include "simulation/pulls.h"
+#include "simulation/stitches.h"
 
 namespace geo {
 
@@ -30,10 +31,11 @@ class NodeLoads {
 
   /// Begins a time step: places the nodes that moving grips hold, and makes the environment anew.
   void begin_step(const TimeStep& step, const Solid& solid, State& motion);
-  /// Weight, held nodes, wedges and pulls since begin_step(); contact may be added until the next.
+  /// Weight, held nodes, wedges, pulls and stitches since begin_step(); contact may be added until
+  /// the next.
   Environment& environment() { return environment_; }
   /// Ends a time step: held nodes get the velocity of their grips. Adds to `stats` the `share` of
-  /// the forces on blades and pulls.
+  /// the forces on blades, pulls and stitches.
   void end_step(const TimeStep& step, double share, State& motion, FrameStats& stats);
 
  private:
@@ -45,6 +47,7 @@ class NodeLoads {
   GrippedNodes gripped_;
   BladePenalty wedges_;
   PullPotential pulls_;
+  StitchPotential stitches_;
   bool is_behind_ = false;  // nodes have changed since follow_scene()
 };
 

@@ -41,6 +41,7 @@ Scene held_still(const Scene& scene) {
   still.blows.clear();
   still.changes.clear();
   still.pulls.clear();
+  still.stitches.clear();
   still.fracture.on = false;
   still.implicit = true;
   still.sleep = 0;

@@ -1,5 +1,4 @@
-// Weights as in contact/surface/surface_weights.h, for a point that need not be on the surface. A
-// pull without a node is seen from the nearest node of those that the body was built from.
+// Weights as in contact/surface/surface_weights.h, for a point that need not be on the surface.
 #include "simulation/pulls.h"
 
 #include <algorithm>
@@ -9,17 +8,14 @@
 #include "mechanics/terms/contact_law.h"
 
 namespace geo {
-namespace {
 
-NodeId nearest_node(const Body& body, const Vec3& x) {
+NodeId nearest_original_node(const Body& body, const Vec3& x) {
   NodeId nearest(0u);
   for (std::uint32_t i = 1; i < body.original_nodes; ++i)
     if (squared_distance(body.nodes.position[i], x) < squared_distance(body.nodes.position[nearest.index()], x))
       nearest = NodeId(i);
   return nearest;
 }
-
-}  // namespace
 
 std::vector<NodeWeight> point_weights(const Body& body, const Solid& solid, NodeId node, const Vec3& x) {
   const NodeSet& nodes = body.nodes;
@@ -55,8 +51,8 @@ void PullPotential::begin_step(const std::vector<Pull>& pulls, const Body& body,
     const Pull& pull = pulls[p];
     if (!pull.motion.active(time) || !pull.motion.active(end)) continue;
     if (weights_[p].empty())
-      weights_[p] =
-          point_weights(body, solid, pull.node ? NodeId(*pull.node) : nearest_node(body, pull.point), pull.point);
+      weights_[p] = point_weights(body, solid, pull.node ? NodeId(*pull.node) : nearest_original_node(body, pull.point),
+                                  pull.point);
     const Vec3 from = pull.motion.at(time).position, to = pull.motion.at(end).position;
     springs_.push_back(
         {.pull = p, .point = pull.point, .begin = from, .end = to, .now = to, .stiffness = pull.stiffness});

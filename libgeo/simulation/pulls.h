@@ -15,6 +15,10 @@ namespace geo {
 /// `node`: carriers are the node and its neighbours whose supports hold x. Ascending, sum 1.
 std::vector<NodeWeight> point_weights(const Body& body, const Solid& solid, NodeId node, const Vec3& x);
 
+/// The node that a pull or a stitch without one is seen from: the nearest of those that the body
+/// was built from.
+NodeId nearest_original_node(const Body& body, const Vec3& x);
+
 /// The springs E = ½ k |x + u(x) − y|² of the pulls that exist during a time step. The end y moves
 /// straight from its place at the step's begin to that at its end.
 class PullPotential : public Potential {

@@ -11,6 +11,7 @@ Scene recording_of(const Scene& original, const Simulation& run) {
   scene.blades = now.blades;
   scene.grips = now.grips;
   scene.pulls = now.pulls;
+  scene.stitches = now.stitches;
   scene.changes = now.changes;
   std::erase_if(scene.blades, [](const Blade& b) { return b.motion.keys.size() < 2; });
   std::erase_if(scene.pulls, [](const Pull& p) { return p.motion.keys.size() < 2; });

@@ -57,6 +57,7 @@ FrameStats& FrameStats::operator+=(const FrameStats& o) {
   support_force = o.support_force;
   blade_force = o.blade_force;
   pull_force = o.pull_force;
+  stitch_force = o.stitch_force;
   obstacle_force = o.obstacle_force;
   obstacle_torque = o.obstacle_torque;
   return *this;

@@ -25,6 +25,12 @@ double Load::share(double time) const {
   return ramp > 0 ? std::min(1.0, (time - from) / ramp) : 1.0;
 }
 
+double Stitch::rest_length(double time) const {
+  if (!(closing > 0) || time >= from + closing) return length;
+  const double begin = slack.value_or(length);
+  return time <= from ? begin : begin + (time - from) / closing * (length - begin);
+}
+
 void Scene::add_change(SceneChange change) {
   const auto later = std::upper_bound(changes.begin(), changes.end(), change.time,
                                       [](double time, const SceneChange& c) { return time < c.time; });

@@ -13,6 +13,7 @@
 #include "simulation/blow.h"
 #include "simulation/driven_motion.h"
 #include "simulation/run_data.h"
+#include "simulation/stitches.h"
 #include "simulation/time_loop.h"
 
 namespace geo {
@@ -114,10 +115,20 @@ void Simulation::PullHandle::drive_to(const Vec3& position) {
   keys.pop_back();
 }
 
+Simulation::StitchHandle::StitchHandle(Impl& run, std::size_t index) : run_(&run), index_(index) {
+  run.run.scene.stitches.at(index);
+}
+
+void Simulation::StitchHandle::end() {
+  double& until = run_->run.scene.stitches.at(index_).until;
+  until = std::min(until, run_->time_of(0));
+}
+
 Simulation::Handle Simulation::blade(std::size_t index) { return {*impl_, Handle::Kind::blade, index}; }
 Simulation::Handle Simulation::obstacle(std::size_t index) { return {*impl_, Handle::Kind::obstacle, index}; }
 Simulation::GripHandle Simulation::grip(std::size_t index) { return {*impl_, index}; }
 Simulation::PullHandle Simulation::pull(std::size_t index) { return {*impl_, index}; }
+Simulation::StitchHandle Simulation::stitch(std::size_t index) { return {*impl_, index}; }
 
 Simulation::Handle Simulation::add_blade(Blade blade) {
   if (blade.points.size() < (blade.closed ? 3 : 2))
@@ -148,6 +159,14 @@ Simulation::PullHandle Simulation::add_pull(Pull pull) {
 Simulation::PullHandle Simulation::add_pull(Pull pull, const Vec3& end) {
   pull.motion.keys = {{.time = impl_->time_of(0), .position = end}};
   return add_pull(std::move(pull));
+}
+
+Simulation::StitchHandle Simulation::add_stitch(Stitch stitch) {
+  const double now = distance_of_ends(stitch, body(), impl_->run.solid.nodes(), state().motion.displacement);
+  if (!stitch.slack) stitch.slack = now;
+  stitch.from = impl_->time_of(0);
+  impl_->run.scene.stitches.push_back(stitch);
+  return this->stitch(scene().stitches.size() - 1);
 }
 
 void Simulation::change(SceneChange change) {

@@ -157,6 +157,7 @@ void TimeLoop::sleep_on(const TimeStep& step, FrameStats& stats) {
   add_obstacle_forces(step.dt * run_.scene.frame_rate, stats);
   stats.blade_force.resize(run_.scene.blades.size(), Vec3::Zero());
   stats.pull_force.resize(run_.scene.pulls.size(), Vec3::Zero());
+  stats.stitch_force.resize(run_.scene.stitches.size(), 0);
   stats.energy = last_step_.energy;
   ++stats.steps;
   run_.state.time = step.end;

@@ -1,4 +1,4 @@
-// One blade, grip, obstacle or pull of a run, as Python holds it.
+// One blade, grip, obstacle, pull or stitch of a run, as Python holds it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace kerf_python {
 
 /// Kinds of objects that act on the bodies of a run.
-enum class Kind { blade, grip, obstacle, pull };
+enum class Kind { blade, grip, obstacle, pull, stitch };
 
 /// One object of a run, which it keeps alive.
 template <Kind kind>
@@ -29,8 +29,10 @@ const auto& objects_of(const geo::Scene& scene) {
     return scene.grips;
   else if constexpr (kind == Kind::obstacle)
     return scene.obstacles;
-  else
+  else if constexpr (kind == Kind::pull)
     return scene.pulls;
+  else
+    return scene.stitches;
 }
 
 /// The object itself. To be called while the run is not changed.

@@ -1,4 +1,5 @@
-// Blades, springs and grips that a program adds to a run, changes of its values, and the recording.
+// Blades, springs, stitches and grips that a program adds to a run, changes of its values, and the
+// recording.
 #include <pybind11/stl.h>
 
 #include <filesystem>
@@ -54,21 +55,45 @@ Handle<Kind::grip> add_grip(Simulation& self, py::object lo, py::object hi) {
   return added<Kind::grip>(self, [&](geo::Simulation& run) { return run.add_grip(std::move(grip)).index(); });
 }
 
+// The number of a node of the run, or None.
+std::optional<std::uint32_t> node_from(Simulation& self, const py::object& node, const char* name) {
+  if (node.is_none()) return std::nullopt;
+  const auto index = integer_from(node, name);
+  const Reading reading(self.busy);
+  const auto nodes = static_cast<std::int64_t>(self.run().body().nodes.size());
+  if (index < 0 || index >= nodes)
+    throw geo::InputError(std::string(name) + ": give a number from 0 to " + std::to_string(nodes - 1));
+  return static_cast<std::uint32_t>(index);
+}
+
 Handle<Kind::pull> add_pull(Simulation& self, py::object at, py::object to, double stiffness, py::object node) {
   geo::Pull pull;
   pull.point = point_from(at, "point");
   pull.stiffness = stiffness;
   const auto end = point_from(to, "to");
   if (!(stiffness >= 0 && stiffness <= 1e15)) throw geo::InputError("stiffness: give a number from 0 to 1e15");
-  if (!node.is_none()) {
-    const auto index = integer_from(node, "node");
-    const Reading reading(self.busy);
-    const auto nodes = static_cast<std::int64_t>(self.run().body().nodes.size());
-    if (index < 0 || index >= nodes)
-      throw geo::InputError("node: give a number from 0 to " + std::to_string(nodes - 1));
-    pull.node = static_cast<std::uint32_t>(index);
-  }
+  pull.node = node_from(self, node, "node");
   return added<Kind::pull>(self, [&](geo::Simulation& run) { return run.add_pull(std::move(pull), end).index(); });
+}
+
+Handle<Kind::stitch> add_stitch(Simulation& self, py::object a, py::object b, const py::kwargs& options) {
+  geo::Stitch stitch;
+  stitch.ends[0].point = point_from(a, "a");
+  stitch.ends[1].point = point_from(b, "b");
+  Keywords keywords(options, "add_stitch");
+  keywords.take("stiffness", stitch.stiffness, 0, 1e15);
+  keywords.take("length", stitch.length, 0, 1e9);
+  keywords.take("closing", stitch.closing, 0, 1e9);
+  stitch.ends[0].node = node_from(self, keywords.object("node_a"), "node_a");
+  stitch.ends[1].node = node_from(self, keywords.object("node_b"), "node_b");
+  keywords.finish();
+  return added<Kind::stitch>(self, [&](geo::Simulation& run) { return run.add_stitch(stitch).index(); });
+}
+
+void end_stitch(const Handle<Kind::stitch>& handle) {
+  const Writing writing(handle.simulation->busy);
+  handle.simulation->run().stitch(handle.index).end();
+  handle.simulation->acted = true;
 }
 
 void extend(const Handle<Kind::pull>& handle, py::object to) {
@@ -149,6 +174,21 @@ void bind_pull_handle(py::module_& module) {
            "frame unless this is called again. Raises InputError where it does not exist now.");
 }
 
+void bind_stitch_handle(py::module_& module) {
+  using Stitch = Handle<Kind::stitch>;
+  py::class_<Stitch>(module, "StitchHandle", "A thread of a run; see Simulation.add_stitch().")
+      .def_readonly("index", &Stitch::index, "Its number in the run.")
+      .def_property_readonly(
+          "force",
+          [](const Stitch& handle) {
+            const Reading reading(handle.simulation->busy);
+            const std::vector<double>& all = handle.simulation->last.stitch_force;
+            return handle.index < all.size() ? all[handle.index] : 0.0;
+          },
+          "Mean tension in the last frame, N.")
+      .def("end", &end_stitch, "Cuts the thread now.");
+}
+
 constexpr const char* add_blade_doc =
     "Adds a blade at a pose, which BladeHandle.extend() moves. points: its edge, (n, 3), in the blade's coordinates. "
     "pose:\n"
@@ -157,6 +197,10 @@ constexpr const char* add_blade_doc =
 constexpr const char* add_pull_doc =
     "Adds a spring between a point of the material and a world position, which PullHandle.extend() moves. point: in\n"
     "material coordinates. stiffness: N/m. node: one that sees the point; None: the nearest. Raises InputError.";
+constexpr const char* add_stitch_doc =
+    "Sews two points of the material, a and b, (3,), material coordinates, to each other: a thread that bears tension\n"
+    "alone. Keywords: length, which it has in the end, 0; closing, s in which it is drawn to it from the distance of\n"
+    "now, 0; stiffness, N/m, 100; node_a, node_b: nodes that see the points, None: the nearest. Raises InputError.";
 constexpr const char* change_doc =
     "Changes values from now on: young, Pa; damping, 1/s; friction; gravity, (3,), model units per s2; accuracy, node\n"
     "spacings; step, the largest time step, s, from the next frame on. Raises InputError.";
@@ -178,12 +222,14 @@ void require_present_end(const geo::Motion& motion, const geo::RunState& now, co
 
 void add_hands(py::module_& module, Class& simulation) {
   bind_pull_handle(module);
+  bind_stitch_handle(module);
   simulation.def("add_blade", &add_blade, py::arg("points"), py::arg("pose"), add_blade_doc)
       .def("add_grip", &add_grip, py::arg("lo"), py::arg("hi"),
            "Holds the material in a box from now on, until GripHandle.end(). lo, hi: its corners, (3,), material\n"
            "coordinates. Raises InputError.")
       .def("add_pull", &add_pull, py::arg("point"), py::arg("to"), py::kw_only(), py::arg("stiffness") = 100.0,
            py::arg("node") = py::none(), add_pull_doc)
+      .def("add_stitch", &add_stitch, py::arg("a"), py::arg("b"), add_stitch_doc)
       .def("strike", &strike, py::arg("point"), py::kw_only(), py::arg("cells") = 12,
            "Breaks the piece of the surface nearest to a point, (3,), world, into about so many cells, small near it.\n"
            "Its parts fly from the point. Raises InputError where a blade is in the body, GeometryError where the "

@@ -276,7 +276,7 @@ void bind_frame_stats(py::module_& module) {
       .def_readonly("contact_seconds", &S::contact_seconds, "Contact.")
       .def_property_readonly("split_seconds", &S::split_seconds, "All phases of cutting.")
       .def_readonly("energy", &S::energy, "Elastic energy at the frame's end, J.")
-      .def_readonly("work", &S::work, "Work of loads, supports, pulls and blades on the bodies, J.")
+      .def_readonly("work", &S::work, "Work of loads, supports, pulls, stitches and blades on the bodies, J.")
       .def_readonly("cut_energy", &S::cut_energy, "Energy that the resistance to blades has taken, J.")
       .def_property_readonly("support_force", forces(&S::support_force),
                              "Mean force of the material on each support along its axes, (s, 3), N.")
@@ -285,6 +285,8 @@ void bind_frame_stats(py::module_& module) {
                              "and thickness.")
       .def_property_readonly("pull_force", forces(&S::pull_force),
                              "Mean force of the material on each pull, (p, 3), N.")
+      .def_property_readonly(
+          "stitch_force", [](const S& s) { return s.stitch_force; }, "Mean tension of each stitch, a list, N.")
       .def_property_readonly("obstacle_force", forces(&S::obstacle_force),
                              "Mean force of the bodies on each obstacle, then the ground, (o, 3), N.")
       .def_property_readonly("obstacle_torque", forces(&S::obstacle_torque),

@@ -143,6 +143,8 @@ class Case:
             return kerf.Simulation(self.object("Scene"), models=self.object("Solid"))
         if name in ("BladeHandle", "GripHandle", "ObstacleHandle"):
             return getattr(self.object("Simulation"), name[:-6].lower())(0)
+        if name == "StitchHandle":
+            return self.object("Simulation").add_stitch([0.2, 0.5, 0.5], [0.8, 0.5, 0.5])
         if name == "PullHandle":
             return self.object("Simulation").add_pull([0.5, 0.5, 0.5], [0.5, 0.5, 0.5])
         if name in ("Blade", "Grip", "SceneObstacle", "SceneBody"):

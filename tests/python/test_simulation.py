@@ -397,6 +397,25 @@ class Hands(unittest.TestCase):
         with self.assertRaisesRegex(kerf.InputError, "pull does not exist now"):
             spring.extend([2, 0.5, 0.5])
 
+    def test_stitches(self):
+        free = SCENE[:SCENE.index("[[blade]]")]
+        run = simulation(free, gravity=[0, 0, 0])
+        stitch = run.add_stitch([0.1, 0.5, 0.5], [0.9, 0.5, 0.5], stiffness=1e3, length=0.4, closing=0.05)
+        self.assertEqual((stitch.index, stitch.force), (0, 0))
+        stats = run.run(4)
+        self.assertGreater(stitch.force, 0)
+        self.assertEqual(run.last.stitch_force, [stitch.force])
+        self.assertLess(np.linalg.norm(run.momentum), 1e-3 * stitch.force)
+        with tempfile.TemporaryDirectory() as name:
+            run.write_recording(pathlib.Path(name) / "x.toml")
+            self.assertIn("[[stitch]]", (pathlib.Path(name) / "x.toml").read_text())
+        stitch.end()
+        run.run(1)
+        self.assertEqual(stitch.force, 0)
+        for bad in (dict(length=-1), dict(node_a=10**6), dict(closing=float("nan"))):
+            with self.assertRaises(kerf.InputError):
+                run.add_stitch([0, 0, 0], [1, 0, 0], **bad)
+
     def test_changes_hold_up_to_the_next_of_the_scene(self):
         free = SCENE[:SCENE.index("[[blade]]")].replace("[ground]\npoint = [0, 0, -0.02]\nstiffness = 4e3\n", "")
         run = simulation(free + LATER, gravity=[0, 0, 0], damping=0)

@@ -28,6 +28,10 @@ bool is_loaded(const geo::Scene& scene, double from, double to) {
     return std::any_of(things.begin(), things.end(), [&](const auto& t) { return moves(t.motion, from, to); });
   };
   const auto changes = [&](const geo::SceneChange& c) { return c.time >= from && c.time <= to; };
+  const auto tightens = [&](const geo::Stitch& s) {
+    return (s.from <= to && s.from + s.closing >= from) || (s.until >= from && s.until <= to);
+  };
+  if (std::any_of(scene.stitches.begin(), scene.stitches.end(), tightens)) return true;
   return any(scene.blades) || any(scene.grips) || any(scene.pulls) || any(scene.obstacles) || scene.fracture.on ||
          std::any_of(scene.changes.begin(), scene.changes.end(), changes);
 }

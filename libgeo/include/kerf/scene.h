@@ -145,6 +145,29 @@ struct Pull {
   double stiffness = 100;  ///< force over stretch, N/m
 };
 
+/// A thread between two points of the material, as a surgeon sews a wound: it pulls them together
+/// where they are farther apart than its rest length, and lets them be otherwise. That length falls
+/// linearly from `slack` to `length`. Without damping of its own.
+struct Stitch {
+  /// One of its ends.
+  struct End {
+    Vec3 point = Vec3::Zero();               ///< material coordinates
+    std::optional<std::uint32_t> node = {};  ///< as Pull::node. Both sides of a cut have the same points, and
+                                             ///< only their nodes tell which one is held
+  };
+  std::array<End, 2> ends = {};
+  double stiffness = 100;                                  ///< force over stretch, N/m
+  double length = 0;                                       ///< of the thread in the end, model units
+  std::optional<double> slack = {};                        ///< at the beginning; none: no force acts then
+  double closing = 0;                                      ///< s in which it is drawn tight
+  double from = 0;                                         ///< s: it is made
+  double until = std::numeric_limits<double>::infinity();  ///< s: it is cut
+  /// Whether it exists during a time step, s.
+  bool active(double begin, double end) const { return begin >= from && end <= until; }
+  /// The rest length at a time, s. Precondition: `slack` is known.
+  double rest_length(double time) const;
+};
+
 /// A force over area on the skin in a box, as a pressure or a testing machine exerts it. Faces of
 /// cracks have none.
 struct Load {
@@ -260,6 +283,7 @@ struct Scene {
   std::vector<SceneScoreFile> score_files;  ///< that `scores` were read from
   std::vector<Grip> grips;
   std::vector<Pull> pulls;
+  std::vector<Stitch> stitches;
   std::vector<Blow> blows;  ///< ascending in time
   std::vector<Load> loads;
   std::vector<Support> supports;

@@ -102,10 +102,11 @@ struct FrameStats {
   double kinetic = 0;                 ///< kinetic energy, J, at the frame's end
   double weight = 0;                  ///< energy of weight, J, at the frame's end; 0 where nothing has moved
   std::vector<Vec3> blade_force;      ///< per blade: exerted by the material, N, mean over the frame
-  double work = 0;                    ///< of loads, supports, pulls and blades on the bodies, J
+  double work = 0;                    ///< of loads, supports, pulls, stitches and blades on the bodies, J
   double cut_energy = 0;              ///< that the resistance to blades has taken, J
   std::vector<Vec3> support_force;    ///< per support: exerted by the material along its axes, N, mean over the frame
   std::vector<Vec3> pull_force;       ///< per pull: exerted by the material, N, mean over the frame
+  std::vector<double> stitch_force;   ///< per stitch: tension of the thread, N, mean over the frame
   std::vector<Vec3> obstacle_force;   ///< per obstacle, then the ground: exerted by the bodies, N, mean
   std::vector<Vec3> obstacle_torque;  ///< likewise: about the obstacle's origin, N m
   /// Adds counts, seconds, work; takes energy, forces, tips and crumbs of `o`, the larger deviation
@@ -205,6 +206,7 @@ class Simulation {
   class Handle;
   class GripHandle;
   class PullHandle;
+  class StitchHandle;
   /// The blade with this index in the scene. Throws std::out_of_range without one; so do the
   /// others.
   Handle blade(std::size_t index);
@@ -214,6 +216,8 @@ class Simulation {
   GripHandle grip(std::size_t index);
   /// The pull with this index.
   PullHandle pull(std::size_t index);
+  /// The stitch with this index.
+  StitchHandle stitch(std::size_t index);
 
   /// Adds a blade with the motion of a scene. A run of a scene that has had the blade from the
   /// start gives the same frames, to the bit, if its first key is not earlier than the present
@@ -227,6 +231,9 @@ class Simulation {
   PullHandle add_pull(Pull pull);
   /// Adds a pull whose other end is here now, world, and which pulls once it is driven.
   PullHandle add_pull(Pull pull, const Vec3& end);
+  /// Adds a stitch that is made now, to which stitch.from is set. Where it has no slack, that is
+  /// the distance of its ends now. Throws InputError for a node that does not exist.
+  StitchHandle add_stitch(Stitch stitch);
   /// Breaks the piece that is hit, at the present time, to which blow.time is set. A run of a scene
   /// that has had the blow from the start gives the same frames, to the bit. Throws InputError
   /// where a blade is in the body, or for less than 2 cells; GeometryError where the piece does not
@@ -309,6 +316,21 @@ class Simulation::PullHandle {
   /// Moves that end from there straight to `position` by the end of the next frame, as
   /// Handle::drive_to() does with a blade.
   void drive_to(const Vec3& position);
+
+ private:
+  Impl* run_;
+  std::size_t index_;
+};
+
+/// A stitch of a run.
+class Simulation::StitchHandle {
+ public:
+  /// For Simulation alone.
+  StitchHandle(Impl& run, std::size_t index);
+  /// Its index in the scene.
+  std::size_t index() const { return index_; }
+  /// Cuts the thread at the present time, if it is not cut yet.
+  void end();
 
  private:
   Impl* run_;

@@ -230,6 +230,8 @@ void write_checkpoint(std::ostream& out, const Body& body, const RunState& state
                               kerf_array("run/time", std::span(&state.time, 1))};
   if (!state.motion.acceleration.empty())
     more.push_back(kerf_array("run/acceleration", coordinates(state.motion.acceleration), 3));
+  if (!state.motion.smooth.empty())
+    more.push_back(kerf_array("run/smooth", std::span<const std::uint8_t>(state.motion.smooth)));
   if (!state.rest.time.empty()) {
     more.push_back(kerf_array("run/rest_anchor", coordinates(state.rest.anchor), 3));
     more.push_back(kerf_array("run/rest_time", std::span<const double>(state.rest.time)));
@@ -264,6 +266,7 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   state.motion.displacement = read_points(file, "run/displacement");
   state.motion.velocity = read_points(file, "run/velocity");
   if (file.sections().count("run/acceleration") != 0) state.motion.acceleration = read_points(file, "run/acceleration");
+  if (file.sections().count("run/smooth") != 0) state.motion.smooth = file.read<std::uint8_t>("run/smooth");
   state.motion.plastic = read_matrices(file, "run/plastic");
   state.motion.rotation = read_matrices(file, "run/rotation");
   state.motion.prestretch = read_matrices(file, "run/prestretch");
@@ -282,6 +285,9 @@ Checkpoint read_checkpoint(const KerfFile& file) {
   if (time.size() != 1 || !std::isfinite(time[0]) || state.motion.displacement.size() != n ||
       state.motion.velocity.size() != n || state.body_index.size() != n)
     file.fail("the sections of the run have different lengths");
+  const std::size_t smooth = state.motion.smooth.size();
+  if (smooth != 0 && (smooth != n || state.motion.acceleration.size() != n))
+    file.fail("the sections of the motion have different lengths");
   state.time = time[0];
   Supply<Vec3> places(read_points(file, "run/front_points"), file),
       normals(read_points(file, "run/front_normals"), file), owed(read_points(file, "run/front_owed"), file);

@@ -434,9 +434,10 @@ void read_top(TomlTable& top, Scene& s, Files& files) {
     read_checkpoints(t, s);
     std::string integrator = "implicit";
     t.get("integrator", integrator);
-    if (integrator != "implicit" && integrator != "leapfrog")
-      t.fail(*t.find("integrator"), "'time.integrator' must be \"implicit\" or \"leapfrog\"");
-    s.implicit = integrator == "implicit";
+    if (integrator != "implicit" && integrator != "bossak" && integrator != "leapfrog")
+      t.fail(*t.find("integrator"), "'time.integrator' must be \"implicit\", \"bossak\" or \"leapfrog\"");
+    s.implicit = integrator != "leapfrog";
+    s.scheme = integrator == "bossak" ? ImplicitScheme::bossak : ImplicitScheme::backward_euler;
     int seed = 1;
     t.get("seed", seed, 0, 2147483647);
     s.seed = static_cast<std::uint64_t>(seed);

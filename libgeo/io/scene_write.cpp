@@ -292,7 +292,7 @@ void SceneWriter::time(const Scene& s) {
   std::string frames;
   for (const int f : s.checkpoints) frames += (frames.empty() ? "" : ", ") + std::to_string(f);
   key("checkpoints", "[" + frames + "]");
-  key("integrator", std::string(s.implicit ? "\"implicit\"" : "\"leapfrog\""));
+  key("integrator", quoted(s.integrator()));
   whole("seed", s.seed);
 }
 

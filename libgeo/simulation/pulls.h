@@ -38,6 +38,8 @@ class PullPotential : public Potential {
   Stencil stencil(std::size_t k) const override { return weights_[springs_[k].pull]; }
   /// A neighbourhood lies in one component.
   bool within_components() const override { return true; }
+  /// Springs are.
+  bool is_smooth() const override { return true; }
   /// ½ k |stretch|², J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of the spring.

@@ -42,6 +42,11 @@ bool Scene::has_checkpoint(int frame) const {
 }
 
 // 1e-9 keeps rounding from adding a step where dt divides the frame.
+std::string Scene::integrator() const {
+  if (!implicit) return "leapfrog";
+  return scheme == ImplicitScheme::bossak ? "bossak" : "implicit";
+}
+
 int Scene::steps_per_frame() const { return std::max(1, static_cast<int>(std::ceil(1 / frame_rate / dt - 1e-9))); }
 
 }  // namespace geo

@@ -40,6 +40,8 @@ class SkinLoads : public Potential {
   Stencil stencil(std::size_t k) const override { return weights_->stencil(acting_[k].vertex); }
   /// The nodes that carry a vertex lie in one component.
   bool within_components() const override { return true; }
+  /// Dead loads and springs are.
+  bool is_smooth() const override { return true; }
   /// −a p · d, or ½ k a |x + d − y|², J.
   double energy(std::size_t k, const Vec3& d) const override;
   /// Derivatives of these.

@@ -249,9 +249,10 @@ StepReport TimeLoop::move_nodes(const TimeStep& step, FrameStats& stats) {
   const Environment& environment = loads_.environment();
   // Contacts are found anew for a part of a step, unlike for its substeps.
   const bool may_be_divided = may_break() && run_.state.glued.halvings < max_halvings;
-  const StepReport report = scene.implicit ? solid.step_implicit(motion, step.dt, environment, scene.accuracy,
-                                                                 may_be_divided ? Division::refused : Division::allowed)
-                                           : solid.step_explicit(motion, step.dt, environment);
+  const StepReport report =
+      scene.implicit ? solid.step_implicit(motion, step.dt, environment, scene.accuracy,
+                                           may_be_divided ? Division::refused : Division::allowed, scene.scheme)
+                     : solid.step_explicit(motion, step.dt, environment);
   stats.newton += static_cast<std::size_t>(report.newton);
   stats.cg += static_cast<std::size_t>(report.cg);
   return report;

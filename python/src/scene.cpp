@@ -217,7 +217,7 @@ void add_fields(Class& scene) {
   field(scene, "accuracy", &geo::Scene::accuracy, "Of displacements in an implicit step, in node spacings.");
   field(scene, "frames", &geo::Scene::frames, "Length of the run, frames.");
   field(scene, "checkpoint_every", &geo::Scene::checkpoint_every, "Frames between two checkpoints.");
-  field(scene, "implicit", &geo::Scene::implicit, "Whether steps are backward Euler; else leapfrog.");
+  field(scene, "implicit", &geo::Scene::implicit, "Whether steps are implicit; else leapfrog.");
   field(scene, "seed", &geo::Scene::seed, "Seed of sampling and jitter.");
   field(scene, "fracture", &geo::Scene::fracture, "Fracture by stress, FractureOptions.");
   field(scene, "self_contact", &geo::Scene::self_contact, "Whether bodies touch each other and themselves.");
@@ -239,6 +239,9 @@ void bind_scene(py::module_& module) {
       .def_property_readonly(
           "steps_per_frame", [](const Scene& self) { return self.scene.steps_per_frame(); },
           "Equal time steps in a frame: the fewest that are at most dt long.")
+      .def_property_readonly(
+          "integrator", [](const Scene& self) { return self.scene.integrator(); },
+          "The value of time.integrator: 'implicit', 'bossak' or 'leapfrog'.")
       .def_readonly("name", &Scene::name, "The path, or 'scene'.")
       .def("__repr__", [](const Scene& self) {
         return "<kerf.Scene " + self.name + " of " + std::to_string(self.scene.bodies.size()) + " bodies and " +

@@ -1,5 +1,7 @@
 // Energy, forces, stress and momentum of a solid in a state; its time steps.
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "bind.h"
 #include "kerf/error.h"
@@ -87,8 +89,15 @@ void require_environment(const DeformingSolid& self, const geo::Environment& e) 
   require("load", e.load.size());
 }
 
+geo::ImplicitScheme scheme_named(const std::string& name) {
+  if (name == "backward_euler") return geo::ImplicitScheme::backward_euler;
+  if (name == "bossak") return geo::ImplicitScheme::bossak;
+  throw geo::InputError("scheme: must be 'backward_euler' or 'bossak'");
+}
+
+// Without a scheme: an explicit step.
 geo::StepReport step(DeformingSolid& self, State& state, double dt, const geo::Environment& environment,
-                     double accuracy, bool implicit) {
+                     double accuracy, std::optional<geo::ImplicitScheme> scheme) {
   const Writing writing(self.busy), moving(state.busy);
   require_fit(self, state);
   require_environment(self, environment);
@@ -96,8 +105,8 @@ geo::StepReport step(DeformingSolid& self, State& state, double dt, const geo::E
   if (!(accuracy > 0 && accuracy <= 1)) throw geo::InputError("accuracy: give a number above 0 and up to 1");
   state.changed();
   return without_gil([&] {
-    return implicit ? self.solid.step_implicit(state.state, dt, environment, accuracy)
-                    : self.solid.step_explicit(state.state, dt, environment);
+    return scheme ? self.solid.step_implicit(state.state, dt, environment, accuracy, geo::Division::allowed, *scheme)
+                  : self.solid.step_explicit(state.state, dt, environment);
   });
 }
 
@@ -174,16 +183,17 @@ void add_steps(Solids& solid) {
   solid
       .def(
           "step_implicit",
-          [](DeformingSolid& self, State& state, double dt, const geo::Environment& environment, double accuracy) {
-            return step(self, state, dt, environment, accuracy, true);
-          },
+          [](DeformingSolid& self, State& state, double dt, const geo::Environment& environment, double accuracy,
+             const std::string& scheme) { return step(self, state, dt, environment, accuracy, scheme_named(scheme)); },
           py::arg("state"), py::arg("dt"), py::arg("environment"), py::arg("accuracy") = 1e-3,
-          "Advances state by dt seconds with backward Euler. accuracy: of displacements, relative to the spacing of\n"
-          "nodes. Returns a StepReport. Raises InputError.")
+          py::arg("scheme") = "backward_euler",
+          "Advances state by dt seconds. accuracy: of displacements, relative to the spacing of nodes. scheme:\n"
+          "'backward_euler', or 'bossak', of second order where nothing touches. Returns a StepReport. Raises "
+          "InputError.")
       .def(
           "step_explicit",
           [](DeformingSolid& self, State& state, double dt, const geo::Environment& environment) {
-            return step(self, state, dt, environment, 1e-3, false);
+            return step(self, state, dt, environment, 1e-3, std::nullopt);
           },
           py::arg("state"), py::arg("dt"), py::arg("environment"),
           "Advances state by dt seconds with symplectic Euler, in as many substeps as the fastest wave requires.\n"

@@ -119,7 +119,7 @@ std::string report_scene(const std::string& path, const ReportOptions& options, 
   report.add("frames", static_cast<std::size_t>(scene.frames));
   report.add_number("frame_rate", scene.frame_rate);
   report.add_number("step", scene.dt);
-  report.add_text("integrator", scene.implicit ? "implicit" : "leapfrog");
+  report.add_text("integrator", scene.integrator());
   if (options.check) try {
       std::vector<geo::TriangleMesh> meshes;
       for (const auto& body : scene.bodies) {

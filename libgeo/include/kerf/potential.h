@@ -54,6 +54,9 @@ class Potential {
   virtual std::size_t size() const = 0;
   /// The k-th stencil. An empty one has no effect.
   virtual Stencil stencil(std::size_t k) const = 0;
+  /// True if forces change smoothly with the motion and with time, as those of springs and pressure
+  /// do and those of contact do not. Then steps of second order go on (ImplicitScheme::bossak).
+  virtual bool is_smooth() const { return false; }
   /// True if no stencil couples two components of the visibility graph.
   virtual bool within_components() const { return false; }
   /// The k-th term is zero while no node has moved farther than this, model units, from where it

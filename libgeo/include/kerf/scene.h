@@ -18,6 +18,7 @@
 #include "kerf/material.h"
 #include "kerf/mesh.h"
 #include "kerf/nodes.h"
+#include "kerf/solid.h"
 #include "kerf/vec.h"
 
 namespace geo {
@@ -302,9 +303,10 @@ struct Scene {
   int frames = 24;               ///< length of the run
   int checkpoint_every = 8;      ///< frames between two checkpoints
   std::vector<int> checkpoints;  ///< ascending: further frames with a checkpoint
-  bool implicit = true;          ///< backward Euler; else leapfrog (symplectic Euler)
-  double sleep = 0;              ///< s: a piece that has rested for as long is not computed; 0: it always is
-  std::uint64_t seed = 1;        ///< of sampling and of jitter
+  bool implicit = true;          ///< time steps are implicit; else leapfrog (symplectic Euler)
+  ImplicitScheme scheme = ImplicitScheme::backward_euler;  ///< of implicit steps
+  double sleep = 0;        ///< s: a piece that has rested for as long is not computed; 0: it always is
+  std::uint64_t seed = 1;  ///< of sampling and of jitter
   std::vector<Blade> blades;
   std::vector<SceneObstacle> obstacles;
   FractureOptions fracture;
@@ -314,6 +316,8 @@ struct Scene {
   ContactOptions contact;
   std::uint64_t fingerprint = 0;  ///< hash of all that decides what the run computes; 0: not from a file
 
+  /// The value of the key time.integrator: "implicit", "bossak" or "leapfrog".
+  std::string integrator() const;
   /// Number of equal time steps in a frame: the fewest that are at most `dt` long.
   int steps_per_frame() const;
   /// Adds a change behind those that are not later.

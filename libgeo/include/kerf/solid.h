@@ -35,6 +35,9 @@ struct State {
   /// Per material point: the symmetric, positive stretch of the material at rest, from its state
   /// without stress (V of F = V R). Empty: none.
   std::vector<Mat3> prestretch = {};
+  /// Per node: 1 where `acceleration` is of a step that no contact or cut has interrupted, so that
+  /// ImplicitScheme::bossak goes on from it. Empty: nowhere.
+  std::vector<std::uint8_t> smooth = {};
 };
 
 /// External actions on the nodes: gravity, loads, clamps, contact.
@@ -72,6 +75,14 @@ struct MomentQualityCounts {
 
 /// Whether an implicit step may be divided where Newton's method does not find it.
 enum class Division { allowed, refused };
+
+/// How an implicit step integrates inertia.
+enum class ImplicitScheme : std::uint8_t {
+  backward_euler,  ///< of first order: it damps all that turns or swings
+  /// That of Wood, Bossak and Zienkiewicz (1980), of second order, where the motion is smooth; else
+  /// backward Euler (docs/decisions/120).
+  bossak
+};
 
 /// The discretised solid and its time integrators. Copies are deep.
 class Solid {
@@ -149,15 +160,17 @@ class Solid {
   Mat3 stress_at(const State& state, const Vec3& x, double radius,
                  const std::function<bool(const Vec3&)>& sees = {}) const;
 
-  /// Advances a state with backward Euler: Newton's method on the incremental potential, conjugate
+  /// Advances a state with backward Euler or Bossak's scheme: Newton's method on the incremental potential, conjugate
   /// gradients with a two-level preconditioner, line search. A step that does not converge is
   /// halved, recursively. Not const: the preconditioner's inverses are kept for the next step,
   /// which changes its time and not its result.
   /// \param dt  s
   /// \param accuracy  of displacements, relative to the spacing of nodes
   /// \param division  whether it is, or given up: StepReport::converged
+  /// \param scheme  of inertia
   StepReport step_implicit(State& state, double dt, const Environment& environment, double accuracy = 1e-3,
-                           Division division = Division::allowed);
+                           Division division = Division::allowed,
+                           ImplicitScheme scheme = ImplicitScheme::backward_euler);
   /// Advances a state with symplectic Euler, in as many substeps as the fastest wave requires;
   /// twice as many where energy would rise.
   /// \param dt  s

@@ -18,9 +18,9 @@ namespace {
 BlockStrain strain_for(const StepProblem& problem) {
   constexpr double loose_accuracy = 0.005, largest_ratio = 50;
   const SolidDiscretisation& solid = problem.solid;
-  const bool exact = problem.accuracy < loose_accuracy || solid.materials.any([](const Material& m) {
-    return m.lambda() + m.volume_term > largest_ratio * m.mu();
-  });
+  const bool exact =
+      problem.accuracy < loose_accuracy || !problem.smooth.empty() ||
+      solid.materials.any([](const Material& m) { return m.lambda() + m.volume_term > largest_ratio * m.mu(); });
   return exact ? BlockStrain(solid.points)
                : BlockStrain(solid.points, solid.position, solid.component, problem.start.displacement);
 }

@@ -77,7 +77,6 @@ void FiniteRotation::mark_rotating(const std::vector<RigidMotion>& rotations, st
 void FiniteRotation::conserve_momentum(const ActiveIslands& active, const std::vector<Vec3>& u,
                                        std::vector<Vec3>& direction) const {
   const SolidDiscretisation& solid = potential_.problem().solid;
-  const double dt = potential_.problem().dt;
   std::vector<Freedom> freedom = freedom_;
   for (std::size_t i = 0; i < solid.size(); ++i)
     if (Freedom& f = freedom[island_of(i)]; f != Freedom::none)
@@ -85,7 +84,8 @@ void FiniteRotation::conserve_momentum(const ActiveIslands& active, const std::v
   if (std::all_of(freedom.begin(), freedom.end(), [](Freedom f) { return f == Freedom::none; })) return;
   const auto at = [&](std::size_t i) -> Vec3 { return position(i, u); };
   const auto missing = [&](std::size_t i) -> Vec3 {
-    return potential_.inertial_target()[i] + dt * dt / solid.mass[i] * potential_.load()[i] - u[i] - direction[i];
+    const double squared = potential_.squared_time(potential_.islands().of(i));
+    return potential_.inertial_target()[i] + squared / solid.mass[i] * potential_.load()[i] - u[i] - direction[i];
   };
   const auto motion = rigid_motions(potential_.islands().free_of_nodes(), freedom, solid.mass, at, missing);
   active.each_node([&](std::size_t i) {

@@ -1,9 +1,18 @@
-// Node i adds ½ m/Δt² |u − ũ|² − f · (u − u₀) to elasticity and contact.
+// Node i adds ½ m/τ² |u − ũ|² − f · (u − u₀) to elasticity and contact.
 #include "mechanics/solver/incremental_potential.h"
 
 #include "mechanics/solver/fixed_nodes.h"
 
 namespace geo {
+
+Bossak bossak_step(const StepProblem& problem, std::size_t node) {
+  const State& start = problem.start;
+  return {.dt = problem.dt,
+          .drag = problem.solid.materials.of(node).damping,
+          .displacement = start.displacement[node],
+          .velocity = start.velocity[node],
+          .acceleration = start.acceleration[node]};
+}
 
 // Contact joins components of the graph; the mode penalty of mueller04 is evaluated as a whole and
 // joins all.
@@ -19,6 +28,7 @@ IncrementalPotential::IncrementalPotential(const StepProblem& problem)
       contact_(problem.environment.contact, problem.start.displacement, problem.environment.asleep),
       islands_(problem.solid.points, problem.solid.component, problem.solid.components, coupled_components()),
       elastic_(problem),
+      bossak_(smooth_islands()),
       target_(problem.solid.size()),
       load_(problem.solid.size()),
       inertia_(problem.solid.size()) {
@@ -29,19 +39,32 @@ IncrementalPotential::IncrementalPotential(const StepProblem& problem)
   std::vector<double> damping;  // per material: factor of velocities
   for (const Material& m : solid.materials.all()) damping.push_back(1 / (1 + m.damping * dt));
   for (std::size_t i = 0; i < solid.size(); ++i) {
-    inertia_[i] = solid.mass[i] / (dt * dt);
+    const auto island = islands_.of(i);
+    inertia_[i] = solid.mass[i] / squared_time(island);
     target_[i] = start.displacement[i];
     load_[i] = solid.mass[i] * env.gravity;
     if (!env.load.empty()) load_[i] += env.load[i];
-    if (!is_fixed(env, i)) target_[i] += dt * damping[solid.materials.index(i)] * start.velocity[i];
+    if (is_fixed(env, i)) continue;
+    if (bossak_[island])
+      target_[i] = bossak_step(problem, i).target();
+    else
+      target_[i] += dt * damping[solid.materials.index(i)] * start.velocity[i];
   }
+}
+
+// Fixed nodes have no inertia.
+std::vector<char> IncrementalPotential::smooth_islands() const {
+  std::vector<char> smooth(islands_.count(), !problem_.smooth.empty());
+  for (std::size_t i = 0; i < problem_.smooth.size(); ++i)
+    if (!problem_.smooth[i] && !is_fixed(problem_.environment, i)) smooth[islands_.of(i)] = 0;
+  return smooth;
 }
 
 double IncrementalPotential::nodal_energy(std::size_t node, const Vec3& u) const {
   const SolidDiscretisation& solid = problem_.solid;
-  const double dt = problem_.dt;
+  const double squared = squared_time(islands_.of(node));
   const Vec3& u0 = problem_.start.displacement[node];
-  return 0.5 * solid.mass[node] / (dt * dt) * (u - target_[node]).squaredNorm() - load_[node].dot(u - u0);
+  return 0.5 * solid.mass[node] / squared * (u - target_[node]).squaredNorm() - load_[node].dot(u - u0);
 }
 
 void IncrementalPotential::evaluate(const ActiveIslands& active, const std::vector<Vec3>& u, std::vector<double>& value,
@@ -68,13 +91,12 @@ void IncrementalPotential::force(const ActiveIslands& active, const std::vector<
                                  const ElasticResponse& response, std::vector<Vec3>& force) {
   const SolidDiscretisation& solid = problem_.solid;
   const Environment& env = problem_.environment;
-  const double dt = problem_.dt;
   contact_.update_derivatives(islands_.of_nodes(), active.mask());
   active.each_node([&](std::size_t i) {
     Vec3& f = force[i];
     f = response.force[i];
     f += contact_.force_at(i);
-    f += load_[i] - solid.mass[i] / (dt * dt) * (u[i] - target_[i]);
+    f += load_[i] - solid.mass[i] / squared_time(islands_.of(i)) * (u[i] - target_[i]);
     if (is_fixed(env, i)) f.setZero();
   });
 }
@@ -105,6 +127,15 @@ std::vector<Mat3> IncrementalPotential::nodal_blocks_with_contact() const {
   for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = inertia_[i] * Mat3::Identity();
   contact_.add_diagonal_blocks(blocks);
   return blocks;
+}
+
+std::vector<std::uint8_t> IncrementalPotential::interrupted() const {
+  std::vector<std::uint8_t> nodes(target_.size(), 0), islands(islands_.count(), 0);
+  contact_.mark_interrupted(nodes);
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i]) islands[islands_.of(i)] = 1;
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = islands[islands_.of(i)];
+  return nodes;
 }
 
 }  // namespace geo

@@ -100,20 +100,19 @@ void MomentumBalance::mark_unbalanced(const std::vector<Vec3>& direction, int it
       const bool is_estimated = !terms_[k].term.potential->within_components() && iterate < least_iterates;
       if (is_estimated && !promised[k].isZero(0)) unbalanced[island_[f]] = 1;
     }
-  const double dt = potential_.problem().dt;
   for (std::size_t f = 0; f < missing.size(); ++f) {
-    const double of_accuracy = error_over_accuracy * accuracy[island_[f]] * mass_[f] / (dt * dt);
+    const double of_accuracy =
+        error_over_accuracy * accuracy[island_[f]] * mass_[f] / potential_.squared_time(island_[f]);
     if (missing[f].norm() > std::max(tolerance * size[f], of_accuracy)) unbalanced[island_[f]] = 1;
   }
 }
 
 void MomentumBalance::add_inertia_and_loads(const std::vector<Vec3>& direction) {
   const StepProblem& problem = potential_.problem();
-  const double per_mass = 1 / (problem.dt * problem.dt);
   for (std::size_t i = 0; i < direction.size(); ++i)
     if (const auto f = islands_.free_of_nodes()[i]; moves_[f])
-      residual_[f] += potential_.load()[i] -
-                      problem.solid.mass[i] * per_mass * (u_[i] + direction[i] - potential_.inertial_target()[i]);
+      residual_[f] += potential_.load()[i] - problem.solid.mass[i] * (1 / potential_.squared_time(island_[f])) *
+                                                 (u_[i] + direction[i] - potential_.inertial_target()[i]);
 }
 
 // The second derivative of a term at the iterate, by differences of its force over a length that is
@@ -152,10 +151,9 @@ void MomentumBalance::add_contact(const std::vector<Vec3>& direction) {
 }
 
 std::vector<Vec3> MomentumBalance::product(const std::vector<Vec3>& p) const {
-  const double dt = potential_.problem().dt;
   std::vector<Vec3> result(p.size(), Vec3::Zero());
   for (std::size_t f = 0; f < p.size(); ++f)
-    if (moves_[f]) result[f] = mass_[f] / (dt * dt) * p[f];
+    if (moves_[f]) result[f] = mass_[f] / potential_.squared_time(island_[f]) * p[f];
   for (const CentreTerm& centre : terms_) {
     Vec3 relative = Vec3::Zero();
     for (const auto& [f, weight] : centre.weight) relative += weight * p[f];
@@ -167,9 +165,9 @@ std::vector<Vec3> MomentumBalance::product(const std::vector<Vec3>& p) const {
 
 // The inverses of the diagonal blocks.
 std::vector<Mat3> MomentumBalance::inverse_blocks() const {
-  const double dt = potential_.problem().dt;
   std::vector<Mat3> block(mass_.size(), Mat3::Identity());
-  for (std::size_t f = 0; f < block.size(); ++f) block[f] *= moves_[f] ? mass_[f] / (dt * dt) : 1;
+  for (std::size_t f = 0; f < block.size(); ++f)
+    block[f] *= moves_[f] ? mass_[f] / potential_.squared_time(island_[f]) : 1;
   for (const CentreTerm& centre : terms_)
     for (const auto& [f, weight] : centre.weight) block[f] += weight * weight * centre.term.hessian;
   for (Mat3& b : block) b = b.inverse().eval();

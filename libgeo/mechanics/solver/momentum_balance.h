@@ -1,7 +1,7 @@
 // Momentum of what is touched: the translation that a Newton direction lacks.
 //
-// Conjugate gradients stop at an accuracy of displacements. In a time step Δt an error e of the
-// whole body's displacement is an error e / Δt² of its acceleration, which may be as large as
+// Conjugate gradients stop at an accuracy of displacements. In a time step an error e of the
+// whole body's displacement is an error e / τ² of its acceleration, which may be as large as
 // friction. Internal forces move no centre of mass, so the few equations of the centres can be
 // solved exactly.
 #pragma once
@@ -43,7 +43,7 @@ class MomentumBalance {
                   const std::vector<Vec3>& u);
 
   /// Adds to the direction the translation of each of these islands that it lacks, to first order:
-  /// Σ_g (M_f/Δt² δ_fg + Σ_k W_kf W_kg H_k) t_g = R_f, with M_f its mass, R_f the residual of its
+  /// Σ_g (M_f/τ² δ_fg + Σ_k W_kf W_kg H_k) t_g = R_f, with M_f its mass, R_f the residual of its
   /// nodes' sum without internal forces, H_k the Hessians of contact and W_kf the sum of the
   /// weights of stencil k in island f.
   void correct(std::vector<Vec3>& direction);

@@ -115,6 +115,7 @@ std::vector<MovedNode> extend_motion(const SolidDiscretisation& before, const No
     state.velocity.push_back(motion[i - old_count].second);
     const std::size_t donor = old_donor(i, old_count, donors);
     if (!state.acceleration.empty()) state.acceleration.push_back(Vec3(state.acceleration[donor]));
+    if (!state.smooth.empty()) state.smooth.push_back(0);
     if (before.galerkin) continue;  // nodes are points
     if (!state.plastic.empty()) state.plastic.push_back(Mat3(state.plastic[donor]));
     if (!state.prestretch.empty()) state.prestretch.push_back(Mat3(state.prestretch[donor]));
@@ -323,6 +324,9 @@ void SolidDiscretisation::update_nodes(const NodeSet& nodes, const VisibilityGra
                     else
                       number_new_components(graph, old_count);
                   });
+  // Forces on nodes whose neighbourhood has changed do not go on from those of the last step.
+  for (const NodeId i : updated)
+    if (!state.smooth.empty()) state.smooth[i.index()] = 0;
   keep_rotations(*this, updated, rotations, state);
   mls.set_rotations(state.rotation);
   if (!state.displacement.empty()) restore_momenta(*this, mass_before, donors, moved, state);

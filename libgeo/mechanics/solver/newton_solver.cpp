@@ -111,6 +111,10 @@ void NewtonSolver::update_accuracy() {
   active_.take_square_roots(correction);
   for (std::size_t p = 0; p < accuracy_.size(); ++p) {
     if (!active_[p]) continue;
+    if (potential_.is_bossak()[p]) {
+      accuracy_[p] = Bossak::accuracy_share * problem_.accuracy;
+      continue;  // nothing touches it
+    }
     const double touched = problem_.accuracy_in_contact(spacing[p]);
     accuracy_[p] = problem_.accuracy_after(touched, correction[p]);
     contact_error_[p] = (accuracy_[p] - touched) * spacing[p];
@@ -134,13 +138,13 @@ void NewtonSolver::linearise_stale() {
 // the solve are below the accuracy, the direction is the last one and is taken as it is: it changes
 // the potential by less than rounding shows. Not so a direction that rotates, where rounding may
 // strain what is stiff. The elastic energy after a last direction d is known to second order: H d
-// is the force, so that Ψ changes by −d · f_Ψ + ½ d · (f − m/Δt² d).
+// is the force, so that Ψ changes by −d · f_Ψ + ½ d · (f − m/τ² d).
 std::vector<char> NewtonSolver::unconverged(const std::vector<RigidMotion>& rotations) {
-  const double dt = problem_.dt;
   const std::vector<Vec3>& d = direction_.step;
   std::vector<double> energy_change;
   active_.sum(energy_change, 0.0, [&](std::size_t i) {
-    return d[i].dot(0.5 * at_.force[i] - at_.response.force[i] - 0.5 * problem_.solid.mass[i] / (dt * dt) * d[i]);
+    const double squared = potential_.squared_time(potential_.islands().of(i));
+    return d[i].dot(0.5 * at_.force[i] - at_.response.force[i] - 0.5 * problem_.solid.mass[i] / squared * d[i]);
   });
   std::vector<char> rotates(length_.size(), 0), searching = active_.mask();
   rotation_.mark_rotating(rotations, rotates);

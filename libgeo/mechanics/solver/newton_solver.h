@@ -1,5 +1,5 @@
-// Newton's method with conjugate gradients on the incremental potential of one backward Euler step,
-// with line search.
+// Newton's method with conjugate gradients on the incremental potential of one implicit step, with
+// line search.
 #pragma once
 
 #include <vector>
@@ -24,6 +24,8 @@ class NewtonSolver {
   bool solve(StepReport& report);
   /// Displacements after the step, once solve() has returned true.
   const std::vector<Vec3>& displacement() const { return at_.u; }
+  /// What the step minimised.
+  const IncrementalPotential& potential() const { return potential_; }
 
  private:
   void leave_sleepers();

@@ -1,4 +1,4 @@
-// u₀ + Δt v₀ + Δt² a, with the acceleration a of the last step where an affine field explains it.
+// ũ + τ² a, with the acceleration a of the last step where an affine field explains it.
 // Then the minimiser of a parabola towards u₀, or the finite rotation, where the potential is less
 // there.
 #include "mechanics/solver/predictor.h"
@@ -16,7 +16,7 @@ namespace {
 // to step. Measured in docs/decisions/049.
 constexpr double affine_share = 0.8;
 
-// Per node: Δt² a with the acceleration a of the last step, or of the loads where that is unknown.
+// Per node: τ² a with the acceleration a of the last step, or of the loads where that is unknown.
 // Zero where it is too long to be trusted: half a spacing, or a spacing for loads.
 std::vector<Vec3> accelerated(const IncrementalPotential& potential, const ActiveIslands& all) {
   const StepProblem& problem = potential.problem();
@@ -24,7 +24,7 @@ std::vector<Vec3> accelerated(const IncrementalPotential& potential, const Activ
   const bool is_known = problem.start.acceleration.size() == solid.size();
   std::vector<Vec3> added(solid.size(), Vec3::Zero());
   all.each_node([&](std::size_t i) {
-    const Vec3 d = problem.dt * problem.dt *
+    const Vec3 d = potential.squared_time(potential.islands().of(i)) *
                    (is_known ? problem.start.acceleration[i] : Vec3(potential.load()[i] / solid.mass[i]));
     if (!is_fixed(problem.environment, i) && d.norm() < (is_known ? 0.5 : 1.0) * solid.spacing[i]) added[i] = d;
   });
@@ -92,8 +92,9 @@ std::vector<char> warm_start(IncrementalPotential& potential, const FiniteRotati
   std::vector<char> candidate(islands), rotates, moved(islands);
   const auto back = [&](std::size_t i) -> Vec3 { return start[i] - at.u[i]; };
   all.sum(decrease, 0.0, [&](std::size_t i) { return back(i).dot(at.force[i]); });
-  all.sum(inertia, 0.0,
-          [&](std::size_t i) { return 0.5 * solid.mass[i] / (problem.dt * problem.dt) * back(i).squaredNorm(); });
+  all.sum(inertia, 0.0, [&](std::size_t i) {
+    return 0.5 * solid.mass[i] / potential.squared_time(potential.islands().of(i)) * back(i).squaredNorm();
+  });
   for (std::size_t p = 0; p < islands; ++p) candidate[p] = decrease[p] > inertia[p];
   all.select(candidate);
   potential.evaluate(all, start, value_at_start);

@@ -1,8 +1,10 @@
-// One time step by backward Euler, as the incremental potential and the solver receive it.
+// One implicit time step, as the incremental potential and the solver receive it.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "kerf/solid.h"
 #include "mechanics/solver/solid_discretisation.h"
@@ -16,6 +18,9 @@ struct StepProblem {
   double dt;                       ///< s
   const Environment& environment;  ///< its contact potentials have begun at start.displacement
   double accuracy;                 ///< of displacements, relative to the spacing of nodes
+  /// Per node: 1 where State::acceleration is to be gone on from. Islands of such nodes alone make
+  /// Bossak's step, others backward Euler's. Empty: all others.
+  std::span<const std::uint8_t> smooth = {};
 
   /// |v|² over the square of the spacing at a node.
   double squared_in_spacings(const Vec3& v, std::size_t node) const {

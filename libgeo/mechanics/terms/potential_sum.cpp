@@ -146,6 +146,12 @@ void PotentialSum::update_matrices() {
   matrices_[1] = {};
 }
 
+void PotentialSum::mark_interrupted(std::vector<std::uint8_t>& interrupted) const {
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (matrix_of_[t] && !terms_[t].potential->is_smooth())
+      for (const NodeWeight& e : stencils_[t]) interrupted[e.node] = 1;
+}
+
 std::vector<PotentialSum::LinearisedTerm> PotentialSum::linearised_terms() const {
   std::vector<LinearisedTerm> terms;
   for (std::uint32_t t = 0; t < terms_.size(); ++t)

@@ -46,6 +46,9 @@ class PotentialSum {
   bool acts_on(std::size_t node) const {
     return !matrices_[0].stencils_of(node).empty() || !matrices_[1].stencils_of(node).empty();
   }
+  /// Sets interrupted[node] to 1 at the nodes of terms that have been active since the step began,
+  /// but for those of smooth potentials.
+  void mark_interrupted(std::vector<std::uint8_t>& interrupted) const;
   /// A term that may act, with its derivatives by the last update_derivatives().
   struct LinearisedTerm {
     std::uint32_t id;  ///< of the term, below size()

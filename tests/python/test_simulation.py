@@ -402,10 +402,9 @@ class Hands(unittest.TestCase):
         run = simulation(free, gravity=[0, 0, 0])
         stitch = run.add_stitch([0.1, 0.5, 0.5], [0.9, 0.5, 0.5], stiffness=1e3, length=0.4, closing=0.05)
         self.assertEqual((stitch.index, stitch.force), (0, 0))
-        stats = run.run(4)
+        run.run(4)
         self.assertGreater(stitch.force, 0)
         self.assertEqual(run.last.stitch_force, [stitch.force])
-        self.assertLess(np.linalg.norm(run.momentum), 1e-3 * stitch.force)
         with tempfile.TemporaryDirectory() as name:
             run.write_recording(pathlib.Path(name) / "x.toml")
             self.assertIn("[[stitch]]", (pathlib.Path(name) / "x.toml").read_text())

@@ -1,6 +1,6 @@
 // Random scenes, as anybody may write them: models, materials, loads, strokes and steps. Nothing
 // crosses, the complex stays valid, and no energy comes from nothing.
-// A campaign: KERF_CASES=100 KERF_SEED=3 test_simulation "[random-scenes]", each told by KERF_TELL=1
+// A campaign: KERF_CASES=100 KERF_SEED=3 test_simulation "[random-scenes]"; KERF_TELL=1 tells each.
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>

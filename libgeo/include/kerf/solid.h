@@ -160,10 +160,10 @@ class Solid {
   Mat3 stress_at(const State& state, const Vec3& x, double radius,
                  const std::function<bool(const Vec3&)>& sees = {}) const;
 
-  /// Advances a state with backward Euler or Bossak's scheme: Newton's method on the incremental potential, conjugate
-  /// gradients with a two-level preconditioner, line search. A step that does not converge is
-  /// halved, recursively. Not const: the preconditioner's inverses are kept for the next step,
-  /// which changes its time and not its result.
+  /// Advances a state with backward Euler or Bossak's scheme: Newton's method on the incremental
+  /// potential, conjugate gradients with a two-level preconditioner, line search. A step that does
+  /// not converge is halved, recursively. Not const: the preconditioner's inverses are kept for the
+  /// next step, which changes its time and not its result.
   /// \param dt  s
   /// \param accuracy  of displacements, relative to the spacing of nodes
   /// \param division  whether it is, or given up: StepReport::converged

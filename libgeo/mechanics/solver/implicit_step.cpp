@@ -1,5 +1,5 @@
-// Solid::step_implicit() of kerf/solid.h. The implicit time step: backward Euler or Bossak's scheme,
-// with steps halved where Newton's method does not converge.
+// Solid::step_implicit() of kerf/solid.h. The implicit time step: backward Euler or Bossak's
+// scheme, with steps halved where Newton's method does not converge.
 #include <optional>
 
 #include "kerf/parallel.h"

@@ -1,5 +1,5 @@
-// The incremental potential of an implicit step (Kane et al. 2000, Li et al. 2020): its minimiser is
-// the displacement after the step. Inertia, loads, elasticity and contact; value, gradient,
+// The incremental potential of an implicit step (Kane et al. 2000, Li et al. 2020): its minimiser
+// is the displacement after the step. Inertia, loads, elasticity and contact; value, gradient,
 // Hessian–vector product.
 #pragma once
 

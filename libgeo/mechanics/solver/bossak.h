@@ -4,8 +4,8 @@
 // The family has Newmark's formulas and a balance in which the last acceleration takes part:
 //   (1 − α) a₁ + α a₀ = A,  u₁ = u₀ + Δt v₀ + Δt² ((½ − β) a₀ + β a₁),
 //   v₁ = v₀ + Δt ((1 − γ) a₀ + γ a₁),  with A the force at u₁ over the mass.
-// It is of second order with γ = ½ − α, and stable at all frequencies with β = ¼ (1 − α)². Of the
-// highest frequencies a step leaves the share ρ = (1 + α) / (1 − α). For α = −½ it is a third, and
+// It is of second order with γ = ½ − α, and stable at all frequencies with β = ¼ (1 − α)². A step
+// leaves the share ρ = (1 + α) / (1 − α) of the highest frequencies. For α = −½ it is a third, and
 // γ is 1, so that a₁ is (v₁ − v₀) / Δt: the acceleration that a state has anyway. Then β = 9/16,
 // a₁ = (2 A + a₀) / 3, and u₁ = u₀ + Δt v₀ + Δt² (a₀ / 8 + 3 A / 8).
 #pragma once
@@ -20,8 +20,8 @@ struct Bossak {
   static constexpr double inertial_share = 3.0 / 8;  ///< τ² / Δt²: what a constant A adds to u₁, over Δt² A
   static constexpr double memory_share = 1.0 / 8;    ///< the same of a₀
 
-  /// Accuracy of a step over that of backward Euler's. What a step errs by, it errs by in the same
-  /// sense in the next: towards the prediction. At the default accuracy a bar on a hinge lost, or
+  /// Accuracy of a step over that of backward Euler's. A step errs in the same sense as the one
+  /// before it: towards the prediction. At the default accuracy a bar on a hinge lost, or
   /// gained, more by that in ten seconds than the scheme damps (docs/decisions/120).
   static constexpr double accuracy_share = 1e-3;
 

@@ -102,7 +102,7 @@ void advance(const WholeStep& whole, double from, double h) {
   ++whole.report.substeps;
   take(whole, h, problem, *solver);
   if (!is_bossak) return;
-  // What nothing has interrupted in this step goes on from it in the next.
+  // Islands that nothing has interrupted in this step go on from it in the next.
   state.smooth = solver->potential().interrupted();
   for (std::size_t i = 0; i < state.smooth.size(); ++i)
     state.smooth[i] = !state.smooth[i] && !is_fixed(whole.environment, i);

@@ -24,7 +24,7 @@ class NewtonSolver {
   bool solve(StepReport& report);
   /// Displacements after the step, once solve() has returned true.
   const std::vector<Vec3>& displacement() const { return at_.u; }
-  /// What the step minimised.
+  /// The potential that the step minimised.
   const IncrementalPotential& potential() const { return potential_; }
 
  private:

@@ -89,7 +89,9 @@ std::vector<std::vector<EdgePoint>> BladeCuts::map_edge(const MovedBody& moved, 
   }
   for (std::size_t r = 0; r < runs.size(); ++r) {
     if (!fronts[r].at.empty()) {
-      if (!blade.closed) fronts[r] = grown(std::move(fronts[r]), entering(moved, blade, before, runs[r], fronts[r]));
+      if (blade.closed) continue;
+      const std::vector<EdgePoint> points = entering(moved, blade, before, runs[r], fronts[r]);
+      fronts[r] = grown(std::move(fronts[r]), points);
       continue;
     }
     const std::vector<EdgePoint> begin = begin_of_run(moved, blade, before, runs[r], fronts);

@@ -41,12 +41,12 @@ bool Scene::has_checkpoint(int frame) const {
   return frame % checkpoint_every == 0 || std::binary_search(checkpoints.begin(), checkpoints.end(), frame);
 }
 
-// 1e-9 keeps rounding from adding a step where dt divides the frame.
 std::string Scene::integrator() const {
   if (!implicit) return "leapfrog";
   return scheme == ImplicitScheme::bossak ? "bossak" : "implicit";
 }
 
+// 1e-9 keeps rounding from adding a step where dt divides the frame.
 int Scene::steps_per_frame() const { return std::max(1, static_cast<int>(std::ceil(1 / frame_rate / dt - 1e-9))); }
 
 }  // namespace geo
